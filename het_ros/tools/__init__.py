@@ -1,0 +1,4 @@
+"""Bags in, results out: make a bag, play it to a running tracker, replay it, look at the answers.
+
+Each command is a module: ``python -m het_ros.tools.make_bag``, ``play``, ``replay``, ``run``.
+"""
