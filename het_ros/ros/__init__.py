@@ -1,0 +1,5 @@
+"""The ROS shell around the tracker: conversions, parameters and the node, and no tracking.
+
+``tracker_node`` is the node; ``session`` the life of one track without ROS; ``images`` and
+``messages`` are pure conversions; ``stamps``, ``status`` and ``hints`` are what its name says.
+"""

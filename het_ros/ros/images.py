@@ -1,0 +1,170 @@
+"""Image messages to arrays, without cv_bridge (which breaks under NumPy 2).
+
+Every conversion ends in ``(H, W, 3) uint8`` BGR or ``(H, W) uint8`` gray, what the tracker takes.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+from sensor_msgs.msg import CompressedImage, Image
+
+Pixels = NDArray[np.uint8]
+
+
+class ImageError(ValueError):
+    """An image message that cannot be read; the text says what to send instead."""
+
+
+@dataclass(frozen=True)
+class Layout:
+    """How one encoding lies in memory.
+
+    Attributes:
+        itemsize: bytes a channel, 1 or 2.
+        channels: interleaved channels a pixel; 1 leaves out the last axis.
+        colour: cv2 code that turns it into BGR, or None where nothing is to be done.
+        plane_rows: rows of data for each two image rows: 2, or 3 where chroma follows below.
+    """
+
+    itemsize: int
+    channels: int
+    colour: int | None = None
+    plane_rows: int = 2
+
+
+ENCODINGS: dict[str, Layout] = {
+    "bgr8": Layout(1, 3),
+    "8UC3": Layout(1, 3),
+    "mono8": Layout(1, 1),
+    "8UC1": Layout(1, 1),
+    "rgb8": Layout(1, 3, cv2.COLOR_RGB2BGR),
+    "bgra8": Layout(1, 4, cv2.COLOR_BGRA2BGR),
+    "8UC4": Layout(1, 4, cv2.COLOR_BGRA2BGR),
+    "rgba8": Layout(1, 4, cv2.COLOR_RGBA2BGR),
+    "mono16": Layout(2, 1),
+    "16UC1": Layout(2, 1),
+    "bgr16": Layout(2, 3),
+    "rgb16": Layout(2, 3, cv2.COLOR_RGB2BGR),
+    "bgra16": Layout(2, 4, cv2.COLOR_BGRA2BGR),
+    "rgba16": Layout(2, 4, cv2.COLOR_RGBA2BGR),
+    "bayer_rggb8": Layout(1, 1, cv2.COLOR_BayerRGGB2BGR),
+    "bayer_bggr8": Layout(1, 1, cv2.COLOR_BayerBGGR2BGR),
+    "bayer_gbrg8": Layout(1, 1, cv2.COLOR_BayerGBRG2BGR),
+    "bayer_grbg8": Layout(1, 1, cv2.COLOR_BayerGRBG2BGR),
+    "bayer_rggb16": Layout(2, 1, cv2.COLOR_BayerRGGB2BGR),
+    "bayer_bggr16": Layout(2, 1, cv2.COLOR_BayerBGGR2BGR),
+    "bayer_gbrg16": Layout(2, 1, cv2.COLOR_BayerGBRG2BGR),
+    "bayer_grbg16": Layout(2, 1, cv2.COLOR_BayerGRBG2BGR),
+    "yuv422": Layout(1, 2, cv2.COLOR_YUV2BGR_UYVY),
+    "uyvy": Layout(1, 2, cv2.COLOR_YUV2BGR_UYVY),
+    "yuv422_yuy2": Layout(1, 2, cv2.COLOR_YUV2BGR_YUYV),
+    "yuyv": Layout(1, 2, cv2.COLOR_YUV2BGR_YUYV),
+    "nv12": Layout(1, 1, cv2.COLOR_YUV2BGR_NV12, plane_rows=3),
+    "nv21": Layout(1, 1, cv2.COLOR_YUV2BGR_NV21, plane_rows=3),
+}
+
+
+def to_array(message: Image, white: int = 65535) -> Pixels:
+    """The pixels of an Image as ``(H, W, 3) uint8`` BGR or ``(H, W) uint8`` gray.
+
+    bgr8, 8UC3, mono8 and 8UC1 are views of the message's own data, row padding included; the
+    array is then read-only where the data is, and lives as long as the message.
+
+    Args:
+        message: the image.
+        white: value of a 16-bit image that becomes 255; everything above is 255 as well.
+
+    Raises:
+        ImageError: unknown encoding, no pixels, a step too short or data too short.
+    """
+    layout = ENCODINGS.get(message.encoding)
+    if layout is None:
+        raise ImageError(
+            f"the encoding {message.encoding!r} is unknown: send one of {', '.join(ENCODINGS)}"
+        )
+    pixels = _view(message, layout)
+    if layout.itemsize == 2:
+        pixels = _to_8_bit(pixels, bool(message.is_bigendian), white)
+    return _to_bgr(pixels, layout, message)
+
+
+def decode(message: CompressedImage) -> Pixels:
+    """The pixels of a CompressedImage (JPEG, PNG...), as :func:`to_array` gives them.
+
+    Raises:
+        ImageError: a depth image, or data that is cut off or no image.
+    """
+    if "compressedDepth" in message.format:
+        raise ImageError("compressedDepth carries a depth image: send a compressed colour image")
+    data = np.frombuffer(message.data, np.uint8)
+    if data.size >= 2 and data[0] == 0xFF and data[1] == 0xD8 and not _has_jpeg_end(data):
+        raise ImageError(f"the JPEG ends early, after {data.size} bytes: is the link losing data?")
+    # The Exif rotation is left alone: boxes are drawn on the sensor's own pixels.
+    flags = cv2.IMREAD_ANYCOLOR | cv2.IMREAD_IGNORE_ORIENTATION
+    pixels = cv2.imdecode(data, flags) if data.size else None
+    if pixels is None:
+        raise ImageError(
+            f"{data.size} bytes of format {message.format!r} are no JPEG or PNG image"
+        )
+    return pixels
+
+
+def array_of(message: Image | CompressedImage, white: int = 65535) -> Pixels:
+    """The pixels of either kind of image message; raises ImageError as they do."""
+    return decode(message) if isinstance(message, CompressedImage) else to_array(message, white)
+
+
+def _has_jpeg_end(data: Pixels) -> bool:
+    """Whether the end marker FF D9 lies in the tail (some cameras pad behind it)."""
+    return data[-1024:].tobytes().find(b"\xff\xd9") >= 0
+
+
+def _view(message: Image, layout: Layout) -> NDArray[np.generic]:
+    """The data as ``(rows, W[, channels])`` without a copy, once it is known to be all there."""
+    height, width, step = message.height, message.width, message.step
+    if height == 0 or width == 0:
+        raise ImageError(f"the image is {width} x {height} px: there is nothing in it")
+    pixel = layout.itemsize * layout.channels
+    if step < width * pixel:
+        raise ImageError(
+            f"step is {step} bytes, but a row of {width} px in {message.encoding} takes "
+            f"{width * pixel}: set width, encoding and step as the driver fills the data"
+        )
+    rows = height * layout.plane_rows // 2
+    needed = (rows - 1) * step + width * pixel
+    if len(message.data) < needed:
+        raise ImageError(
+            f"the data is {len(message.data)} bytes, {width} x {height} px in {message.encoding} "
+            f"with a step of {step} take {needed}: the image is cut off"
+        )
+    flat = np.frombuffer(message.data, np.uint8, count=needed)
+    shape: tuple[int, ...] = (rows, width)
+    strides: tuple[int, ...] = (step, pixel)
+    if layout.channels > 1:
+        shape, strides = (*shape, layout.channels), (*strides, layout.itemsize)
+    kind = np.uint8 if layout.itemsize == 1 else np.uint16
+    return np.ndarray(shape, kind, buffer=flat, strides=strides)
+
+
+def _to_8_bit(pixels: NDArray[np.generic], big_endian: bool, white: int) -> Pixels:
+    """16-bit pixels, 0..white to 0..255, rounded to the nearest."""
+    native = pixels.view(pixels.dtype.newbyteorder(">" if big_endian else "<")).astype(np.uint16)
+    return cv2.convertScaleAbs(native, alpha=255.0 / white)
+
+
+def _to_bgr(pixels: NDArray[np.generic], layout: Layout, message: Image) -> Pixels:
+    """Apply the layout's colour code, if it has one."""
+    if layout.colour is None:
+        return pixels
+    pairs_columns = layout.channels == 2 or layout.plane_rows == 3
+    pairs_rows = layout.plane_rows == 3
+    if (pairs_columns and message.width % 2) or (pairs_rows and message.height % 2):
+        raise ImageError(
+            f"{message.encoding} shares colours between neighbours: "
+            f"{message.width} x {message.height} px must be even"
+        )
+    return cv2.cvtColor(pixels, layout.colour)

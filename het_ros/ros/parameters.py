@@ -1,0 +1,114 @@
+"""Both parameter tables (the tracker's and the node's) as ROS parameters."""
+
+from __future__ import annotations
+
+import sys
+from dataclasses import dataclass
+from typing import Any, TypeVar
+
+from rcl_interfaces.msg import FloatingPointRange, IntegerRange, ParameterDescriptor
+from rclpy.node import Node
+
+from het_ros.tracking.parameter import Parameter, check_parameters, parameter, parameters_of
+
+Configuration = TypeVar("Configuration")
+LARGEST_INT = 2**63 - 1
+
+
+@dataclass(frozen=True)
+class NodeConfig:
+    """Every setting of the node that is none of the tracker's.
+
+    Raises:
+        ValueError: a value is of the wrong type or outside its range.
+    """
+
+    autostart: bool = parameter(
+        True,
+        "configure and activate at start; false leaves both to a lifecycle manager",
+        read_only=True,
+    )
+    image_transport: str = parameter(
+        "raw",
+        "what is read: Image on `image`, or CompressedImage on `image/compressed`",
+        choices=("raw", "compressed"),
+        read_only=True,
+    )
+    white_level: int = parameter(
+        65535,
+        "value of a 16-bit image that counts as white; 4095 for a 12-bit camera",
+        low=1,
+        high=65535,
+    )
+    max_gap: float = parameter(
+        2.0, "a longer gap between two images loses the track", unit="s", low=0.02, high=3600.0
+    )
+    jump_back: float = parameter(
+        1.0,
+        "a stamp older than the newest by this resets the track; by less, the frame is dropped",
+        unit="s",
+        low=0.0,
+        high=3600.0,
+    )
+    image_timeout: float = parameter(
+        5.0,
+        "no image for this long after the start: the log says what is waited for; 0: never",
+        unit="s",
+        low=0.0,
+        high=3600.0,
+    )
+
+    def __post_init__(self) -> None:
+        check_parameters(self)
+
+
+def declare(node: Node, configuration: Configuration) -> None:
+    """Declare every field of a configuration as a parameter, its values as defaults.
+
+    Raises:
+        rclpy.exceptions.ParameterException: an override is of the wrong type or out of range.
+    """
+    for declared in parameters_of(type(configuration)):
+        value = getattr(configuration, declared.name)
+        node.declare_parameter(
+            declared.name,
+            list(value) if isinstance(value, tuple) else value,
+            descriptor_of(declared),
+        )
+
+
+def read(node: Node, configuration: type[Configuration], **changed: Any) -> Configuration:
+    """The configuration that the node's parameters make, ``changed`` fields taken instead.
+
+    Raises:
+        ValueError: the values do not fit together or are outside their ranges.
+    """
+    values = {}
+    for declared in parameters_of(configuration):
+        value = changed.get(declared.name, node.get_parameter(declared.name).value)
+        values[declared.name] = tuple(value) if isinstance(declared.default, tuple) else value
+    return configuration(**values)
+
+
+def descriptor_of(declared: Parameter) -> ParameterDescriptor:
+    """Description, unit, range, choices and read-only flag, as ``ros2 param describe`` shows."""
+    descriptor = ParameterDescriptor(
+        description=f"{declared.doc} [{declared.unit}]" if declared.unit else declared.doc,
+        read_only=declared.read_only,
+    )
+    if declared.choices:
+        descriptor.additional_constraints = f"one of: {', '.join(declared.choices)}"
+    if declared.low is None and declared.high is None:
+        return descriptor
+    if isinstance(declared.default, int):
+        low = -LARGEST_INT if declared.low is None else int(declared.low)
+        high = LARGEST_INT if declared.high is None else int(declared.high)
+        descriptor.integer_range = [IntegerRange(from_value=low, to_value=high, step=0)]
+    else:
+        largest = sys.float_info.max
+        low = -largest if declared.low is None else float(declared.low)
+        high = largest if declared.high is None else float(declared.high)
+        descriptor.floating_point_range = [
+            FloatingPointRange(from_value=low, to_value=high, step=0.0)
+        ]
+    return descriptor

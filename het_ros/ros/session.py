@@ -1,0 +1,122 @@
+"""The life of one track on a stream of frames: started, followed, lost. Knows no ROS."""
+
+from __future__ import annotations
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from het_ros.ros.stamps import SECOND
+from het_ros.tracking.box import Box
+from het_ros.tracking.config import TrackerConfig
+from het_ros.tracking.estimate import Estimate, State
+from het_ros.tracking.tracker import HierarchicalEnsembleTracker
+
+Pixels = NDArray[np.uint8]
+LARGEST_BOX = 2.0  # sides of the image: a larger box is a slip of units, and costs memory
+
+
+class TrackingSession:
+    """At most one track, and why there is none.
+
+    A new box makes a new tracker and replaces the old one only once it has started, so a box
+    that is refused leaves the running track as it was.
+
+    Attributes:
+        state: of the track; IDLE or LOST without one.
+        reason: why the state is not TRACKING, in words; empty while it is.
+        age: s since the target was last measured.
+    """
+
+    def __init__(self, config: TrackerConfig, max_gap: float) -> None:
+        self.config = config
+        self.max_gap = max_gap
+        self.state = State.IDLE
+        self.reason = "waiting for a box"
+        self.age = 0.0
+        self._tracker: HierarchicalEnsembleTracker | None = None
+        self._shape: tuple[int, ...] = ()
+        self._source = ""
+        self._stamp = 0
+        self._seen = 0
+
+    @property
+    def running(self) -> bool:
+        """Whether frames are needed: there is a track, even one that looks for its target."""
+        return self._tracker is not None
+
+    def start(self, image: Pixels, stamp: int, box: Box, source: str = "") -> Estimate:
+        """Start a track on an image with the stamp (ns) of the camera frame ``source``.
+
+        Raises:
+            ValueError: the box does not fit the image; the track that runs goes on.
+        """
+        height, width = image.shape[:2]
+        if box.w > LARGEST_BOX * width or box.h > LARGEST_BOX * height:
+            raise ValueError(
+                f"the box is {box.w:g} x {box.h:g} px, the image only {width} x {height} px: "
+                "send pixels of the image that is tracked"
+            )
+        if not box.touches_image(width, height):
+            raise ValueError(f"{box} lies wholly outside the image of {width} x {height} px")
+        tracker = HierarchicalEnsembleTracker(self.config)
+        estimate = tracker.init(image, box)
+        self._tracker, self._shape, self._source = tracker, image.shape, source
+        self._stamp = self._seen = stamp
+        self._take(estimate)
+        return estimate
+
+    def follow(self, image: Pixels, stamp: int, source: str = "") -> Estimate | None:
+        """The estimate for the next frame, or None where there is no track or it ends here."""
+        if self._tracker is None:
+            return None
+        gap = (stamp - self._stamp) / SECOND
+        broken = self._break(image, gap, source)
+        if broken:
+            self.lose(broken)
+            return None
+        estimate = self._tracker.update(_with_channels_of(image, self._shape), gap)
+        self._stamp = stamp
+        if estimate.state is State.TRACKING:
+            self._seen = stamp
+        self._take(estimate)
+        return estimate
+
+    def drop(self, reason: str) -> None:
+        """End the track on purpose: IDLE."""
+        self._end(State.IDLE, reason)
+
+    def lose(self, reason: str) -> None:
+        """End the track because it cannot go on: LOST until a new box comes."""
+        self._end(State.LOST, reason)
+
+    def _end(self, state: State, reason: str) -> None:
+        self._tracker = None
+        self.state, self.reason, self.age = state, reason, 0.0
+
+    def _break(self, image: Pixels, gap: float, source: str) -> str:
+        """Why the track cannot go on with this frame; empty where it can."""
+        if gap > self.max_gap:
+            return f"no image for {gap:.1f} s (max_gap is {self.max_gap:g} s): send a new box"
+        if image.shape[:2] != self._shape[:2]:
+            old, new = self._shape, image.shape
+            return (
+                f"the image changed from {old[1]} x {old[0]} to {new[1]} x {new[0]} px: "
+                "send a new box"
+            )
+        if source != self._source:
+            return f"the images' frame_id changed from {self._source!r} to {source!r}"
+        return ""
+
+    def _take(self, estimate: Estimate) -> None:
+        self.state = estimate.state
+        self.age = (self._stamp - self._seen) / SECOND
+        self.reason = "" if self.state is State.TRACKING else f"not seen for {self.age:.2f} s"
+
+
+def _with_channels_of(image: Pixels, shape: tuple[int, ...]) -> Pixels:
+    """The image as gray or BGR like the track's first one: a camera may change its encoding."""
+    if image.ndim == len(shape):
+        return image
+    code = cv2.COLOR_GRAY2BGR if image.ndim == 2 else cv2.COLOR_BGR2GRAY
+    return cv2.cvtColor(image, code)

@@ -1,0 +1,65 @@
+"""``~/status``: what the tracker thinks of itself, every processed frame."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
+from std_msgs.msg import Header
+
+from het_ros.tracking.estimate import State
+
+LEVELS = {
+    State.IDLE: DiagnosticStatus.OK,
+    State.TRACKING: DiagnosticStatus.OK,
+    State.COASTING: DiagnosticStatus.WARN,
+    State.LOST: DiagnosticStatus.ERROR,
+}
+
+
+@dataclass(frozen=True)
+class Status:
+    """One frame's status.
+
+    Attributes:
+        state: where the track stands.
+        score: 0..1, how far the box can be trusted; 0 without one.
+        latency: s from the frame's arrival to the status.
+        age: s since the target was last measured; 0 while it is, and without a target.
+        reason: why the state is not TRACKING; empty while it is.
+    """
+
+    state: State
+    score: float
+    latency: float
+    age: float
+    reason: str
+
+
+def status_message(status: Status, name: str, header: Header) -> DiagnosticArray:
+    """One status with its values as text: state, score, latency_ms, age_s, reason."""
+    values = {
+        "state": status.state.value,
+        "score": f"{status.score:.4f}",
+        "latency_ms": f"{1e3 * status.latency:.2f}",
+        "age_s": f"{status.age:.3f}",
+        "reason": status.reason,
+    }
+    text = f"{status.state.value}: {status.reason}" if status.reason else status.state.value
+    return DiagnosticArray(
+        header=header,
+        status=[
+            DiagnosticStatus(
+                level=LEVELS[status.state],
+                name=name,
+                message=text,
+                hardware_id="",
+                values=[KeyValue(key=key, value=value) for key, value in values.items()],
+            )
+        ],
+    )
+
+
+def status_values(message: DiagnosticArray) -> dict[str, str]:
+    """The key-value pairs of a message made by :func:`status_message`."""
+    return {pair.key: pair.value for pair in message.status[0].values}

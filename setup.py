@@ -1,0 +1,77 @@
+"""Installed by colcon as an ament_python package; ``pip install .`` works as well."""
+
+from pathlib import Path
+
+from setuptools import find_packages, setup
+
+NAME = "het_ros"
+ROOT = Path(__file__).parent
+
+# Each executable and the module whose main() it runs.
+COMMANDS = {
+    "tracker": "het_ros.ros.tracker_node",
+}
+
+# Real robots take these from apt (package.xml); `make run` takes them from PyPI.
+EXTRAS = {
+    # ROS 2 Jazzy itself, for machines without apt's.
+    "ros": [
+        "ros-jazzy-rclpy>=7.1,<8",
+        "ros-jazzy-common-interfaces>=5.3,<6",
+        "ros-jazzy-rmw-fastrtps-cpp>=8.4,<9",
+        "opencv-python-headless>=4.6",
+    ],
+    # Reading, writing, playing and drawing bags.
+    "bags": ["rosbags>=0.10,<0.12", "tqdm>=4.60", "matplotlib>=3.5", "av>=10"],
+    # Benchmark with OpenCV's trackers, in an environment of its own: its cv2 is the contrib one.
+    "evaluate": [
+        "opencv-contrib-python-headless>=4.6",
+        "joblib>=1.2",
+        "tqdm>=4.60",
+        "matplotlib>=3.5",
+        "jinja2>=3.0",
+        "av>=10",
+    ],
+    # colcon still needs `setup.py develop`, which setuptools 80 took away.
+    "build": ["colcon-common-extensions>=0.3", "setuptools>=65,<80"],
+    "test": [
+        "pytest>=8",
+        "hypothesis>=6.80",
+        "ruff>=0.6",
+        "mypy>=1.10",
+        "import-linter>=2.0",
+        "catkin-pkg>=1.0",
+        "joblib>=1.2",
+        "jinja2>=3.0",
+    ],
+}
+
+
+def _files(folder: str) -> list[str]:
+    """Files of one folder, relative to the package, as setuptools wants them."""
+    return sorted(str(p.relative_to(ROOT)) for p in (ROOT / folder).glob("*.*") if p.is_file())
+
+
+setup(
+    name=NAME,
+    version="0.1.0",
+    packages=find_packages(include=[NAME, f"{NAME}.*"]),
+    package_data={NAME: ["py.typed", "**/*.j2"]},
+    data_files=[
+        ("share/ament_index/resource_index/packages", [f"resource/{NAME}"]),
+        (f"share/{NAME}", ["package.xml"]),
+        (f"share/{NAME}/config", _files("config")),
+        (f"share/{NAME}/launch", _files("launch")),
+    ],
+    python_requires=">=3.10",
+    install_requires=["numpy>=1.26", "filterpy>=1.4.5"],
+    extras_require=EXTRAS,
+    zip_safe=True,
+    author="het_ros maintainers",
+    author_email="maintainers@het-ros.example.org",
+    maintainer="het_ros maintainers",
+    maintainer_email="maintainers@het-ros.example.org",
+    description="Follow one target on a camera stream; say so when it is lost.",
+    license="Apache-2.0",
+    entry_points={"console_scripts": [f"{cmd} = {mod}:main" for cmd, mod in COMMANDS.items()]},
+)
