@@ -10,7 +10,7 @@ from __future__ import annotations
 import dataclasses
 import math
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, cast
 
 Value = bool | int | float | str | tuple[str, ...]
 
@@ -69,16 +69,21 @@ def parameter(
     read_only: bool = False,
 ) -> Any:
     """A dataclass field that carries its own :class:`Parameter`."""
-    declared = dict(
-        doc=doc, unit=unit, low=low, high=high, choices=choices, read_only=read_only
-    )
+    declared = {
+        "doc": doc,
+        "unit": unit,
+        "low": low,
+        "high": high,
+        "choices": choices,
+        "read_only": read_only,
+    }
     return dataclasses.field(default=default, metadata={"parameter": declared})
 
 
 def parameters_of(configuration: type) -> tuple[Parameter, ...]:
     """The table of a configuration class, in the order of its fields."""
     return tuple(
-        Parameter(name=f.name, default=f.default, **f.metadata["parameter"])
+        Parameter(name=f.name, default=cast(Value, f.default), **f.metadata["parameter"])
         for f in dataclasses.fields(configuration)
     )
 

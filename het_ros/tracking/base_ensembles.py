@@ -1,0 +1,226 @@
+"""Bottom layer: the base ensembles that find the sub-patches again.
+
+A sub-patch's base ensemble is the sum of m weak classifiers, one a compressive feature. All of
+them are evaluated on the same feature maps at once.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+Floats = NDArray[np.float64]
+Features = NDArray[np.float32]
+
+
+class BaseEnsembles(Protocol):
+    """What the tracker asks of a bottom layer."""
+
+    def score_maps(self, features: Features) -> Features:
+        """Scores (Q, rows, columns) of all sub-patches at all places of (m, rows, columns)."""
+        ...
+
+    def learn(self, features: Features, corners: Floats, chosen: NDArray[np.bool_]) -> None:
+        """Update the model of the ``chosen`` (Q,) sub-patches, which lie at ``corners`` (Q, 2).
+
+        ``features`` are those that :meth:`score_maps` was last called with, or a first frame's.
+        """
+        ...
+
+    def likelihood(self, scores: Floats) -> float:
+        """How target-like raw scores (Q,) are, 0..1; 0.5 where they do not say."""
+        ...
+
+
+@dataclass(frozen=True)
+class Detections:
+    """Where the sub-patches were found.
+
+    Attributes:
+        corners: p (Q, 2) float64, working px.
+        scores: c (Q,) float64, raw scores there.
+    """
+
+    corners: Floats
+    scores: Floats
+
+
+def detect(scores: Features, corners: Floats, radius: float) -> Detections:
+    """Find each sub-patch at its best place within ``radius`` (eq. classification).
+
+    The N samples of the paper are all places of the disc. Of equal scores the one nearest the
+    centre counts, so that a target in front of nothing stays where it is.
+
+    Args:
+        scores: F (Q, rows, columns) at every working px, rows and columns from 0.
+        corners: where the sub-patches are looked for (Q, 2), working px.
+        radius: beta, working px; a centre is never without samples.
+    """
+    distances = squared_distances(corners, scores.shape[1:])
+    inside = distances < np.maximum(radius**2, distances.min(axis=(1, 2), keepdims=True) + 1e-9)
+    flat = np.where(inside, scores, -np.inf).reshape(len(scores), -1)
+    best = flat.max(axis=1, keepdims=True)
+    at = np.where(flat == best, distances.reshape(flat.shape), np.inf).argmin(axis=1)
+    y, x = np.divmod(at, scores.shape[2])
+    return Detections(np.stack([x, y], axis=1).astype(np.float64), best[:, 0].astype(np.float64))
+
+
+def scores_at(scores: Features, corners: Floats) -> Floats:
+    """c_new (Q,): each sub-patch's score at the place nearest to its corner (Q, 2), working px."""
+    x = np.clip(np.rint(corners[:, 0]).astype(int), 0, scores.shape[2] - 1)
+    y = np.clip(np.rint(corners[:, 1]).astype(int), 0, scores.shape[1] - 1)
+    return np.asarray(scores[np.arange(len(scores)), y, x], np.float64)
+
+
+def squared_distances(corners: Floats, shape: tuple[int, ...]) -> Floats:
+    """(Q, rows, columns): squared distance of each place to each corner (Q, 2), working px^2."""
+    rows, columns = shape
+    dx = np.arange(columns) - corners[:, :1]
+    dy = np.arange(rows) - corners[:, 1:]
+    return np.asarray(dy[:, :, None] ** 2 + dx[:, None, :] ** 2)
+
+
+@dataclass
+class Gaussians:
+    """Class-conditional densities of every feature for every sub-patch (eq. Gaussian).
+
+    Attributes:
+        mean: mu (Q, m) float64.
+        variance: sigma^2 (Q, m) float64.
+    """
+
+    mean: Floats
+    variance: Floats
+
+    def blend(self, new: Gaussians, keep: float, chosen: NDArray[np.bool_]) -> None:
+        """Update the ``chosen`` (Q,) sub-patches in place (eq. parameterUpdate).
+
+        Args:
+            new: mean and variance of this frame's samples.
+            keep: lambda, weight of the old values.
+            chosen: which sub-patches.
+        """
+        mean, variance = self.mean[chosen], self.variance[chosen]
+        new_mean, new_variance = new.mean[chosen], new.variance[chosen]
+        self.mean[chosen] = keep * mean + (1 - keep) * new_mean
+        self.variance[chosen] = (
+            keep * variance
+            + (1 - keep) * new_variance
+            + keep * (1 - keep) * (mean - new_mean) ** 2
+        )
+
+
+class NaiveBayes:
+    """Base ensembles of naive Bayes classifiers (eqs. classifier, Gaussian, strongClassifier).
+
+    Args:
+        learning_rate: lambda, weight of the old value at an update.
+        positive_radius: samples nearer than this to a sub-patch are positives, working px.
+        negative_radius: samples at least this far are negatives, working px.
+        sigma_floor: least sigma, in standardised features.
+    """
+
+    def __init__(
+        self,
+        learning_rate: float,
+        positive_radius: float,
+        negative_radius: float,
+        sigma_floor: float,
+    ) -> None:
+        self._learning_rate = learning_rate
+        self._positive_radius = positive_radius
+        self._negative_radius = negative_radius
+        self._least_variance = sigma_floor**2
+        self._positive: Gaussians | None = None
+        self._negative: Gaussians | None = None
+        self._squares = np.empty((0, 0), np.float32)
+
+    def score_maps(self, features: Features) -> Features:
+        """F(l) = sum of f(l_i) (eq. strongClassifier) of every sub-patch at every place.
+
+        The log ratio of two Gaussians is quadratic in the feature, so all of them are one
+        matrix product: (Q, 2 m) by (2 m, places), done in two halves to copy nothing.
+
+        Args:
+            features: (m, rows, columns), standardised.
+
+        Returns:
+            (Q, rows, columns) float32.
+        """
+        quadratic, linear, constant = self.coefficients()
+        flat = features.reshape(len(features), -1)
+        scores = quadratic.astype(np.float32) @ self._squared(flat)
+        scores += linear.astype(np.float32) @ flat
+        scores += constant[:, None].astype(np.float32)
+        return scores.reshape(-1, *features.shape[1:])
+
+    def coefficients(self) -> tuple[Floats, Floats, Floats]:
+        """a, b (Q, m) and the sum c (Q,) of f(l_i) = a l_i^2 + b l_i + c_i (eq. classifier).
+
+        The classes' priors are equal, as in the paper, and drop out.
+        """
+        if self._positive is None or self._negative is None:
+            raise RuntimeError("the base ensembles know no target yet: call learn first")
+        one, zero = self._positive, self._negative
+        variance1 = np.maximum(one.variance, self._least_variance)
+        variance0 = np.maximum(zero.variance, self._least_variance)
+        quadratic = 0.5 / variance0 - 0.5 / variance1
+        linear = one.mean / variance1 - zero.mean / variance0
+        constant = 0.5 * (
+            zero.mean**2 / variance0 - one.mean**2 / variance1 + np.log(variance0 / variance1)
+        )
+        return quadratic, linear, constant.sum(axis=1)
+
+    def learn(self, features: Features, corners: Floats, chosen: NDArray[np.bool_]) -> None:
+        """Update the Gaussians of the ``chosen`` sub-patches; the first call sets them outright.
+
+        Args:
+            features: (m, rows, columns), standardised.
+            corners: (Q, 2) of the re-extracted sub-patches, working px.
+            chosen: (Q,).
+        """
+        positive, negative = self._class_gaussians(features, corners)
+        if self._positive is None or self._negative is None:
+            self._positive, self._negative = positive, negative
+            return
+        self._positive.blend(positive, self._learning_rate, chosen)
+        self._negative.blend(negative, self._learning_rate, chosen)
+
+    def likelihood(self, scores: Floats) -> float:
+        """Logistic function of the mean log ratio of a single weak classifier.
+
+        The sum over all weak classifiers overstates what is known, as if the features were
+        independent, and would always come out as 0 or 1.
+        """
+        if self._positive is None:
+            return 0.5
+        mean = float(scores.mean()) / self._positive.mean.shape[1]
+        return float(1 / (1 + np.exp(-np.clip(mean, -50, 50))))
+
+    def _class_gaussians(self, features: Features, corners: Floats) -> tuple[Gaussians, Gaussians]:
+        """Mean and variance of this frame's positive and negative samples."""
+        distances = squared_distances(corners, features.shape[1:])
+        nearest = distances.min(axis=(1, 2), keepdims=True) + 1e-9
+        farthest = distances.max(axis=(1, 2), keepdims=True)
+        positive = distances < np.maximum(self._positive_radius**2, nearest)
+        negative = distances >= np.minimum(self._negative_radius**2, farthest)
+        samples = np.concatenate([positive, negative]).reshape(2 * len(corners), -1)
+        share = (samples / samples.sum(axis=1, keepdims=True)).astype(np.float32)
+        # Two products give E[l] and E[l^2] of both classes of all sub-patches.
+        flat = features.reshape(len(features), -1)
+        mean = (share @ flat.T).astype(np.float64)
+        variance = np.maximum((share @ self._squared(flat).T).astype(np.float64) - mean**2, 0)
+        count = len(corners)
+        return (
+            Gaussians(mean[:count], variance[:count]),
+            Gaussians(mean[count:], variance[count:]),
+        )
+
+    def _squared(self, flat: Features) -> Features:
+        """The features (m, places) squared, in a buffer used again."""
+        if self._squares.shape != flat.shape:
+            self._squares = np.empty_like(flat)
+        return np.multiply(flat, flat, out=self._squares)

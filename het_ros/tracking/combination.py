@@ -1,0 +1,73 @@
+"""Middle layer: from the detected sub-patches to one measurement of the target."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+Floats = NDArray[np.float64]
+
+
+def hypotheses(corners: Floats, offsets: Floats) -> Floats:
+    """Each sub-patch's hypothesis y_i of the target's corner (eq. error).
+
+    The paper writes y_i = dp_i + p_i. With dp_i the sub-patch's corner relative to the target's
+    it must be p_i - dp_i, as here.
+
+    Args:
+        corners: p (Q, 2), where the sub-patches were found, px.
+        offsets: dp (Q, 2), px.
+
+    Returns:
+        (Q, 2), px.
+    """
+    return corners - offsets
+
+
+def weights(scores: Floats, low: float, high: float) -> Floats:
+    """Weights omega (Q,) in [low, high]: scores to zero mean and unit deviation, then rescaled.
+
+    The best sub-patch gets ``high`` and the worst ``low`` in every frame, so the mean of the
+    weights says how the others lie between them and not whether the target is there. Equal
+    scores give every sub-patch the middle of the range.
+
+    Args:
+        scores: c (Q,), raw scores.
+        low: weight of the worst sub-patch.
+        high: weight of the best one.
+    """
+    deviation = scores.std()
+    if not deviation > 0:
+        return np.full(scores.shape, (low + high) / 2)
+    normalised = (scores - scores.mean()) / deviation
+    least, most = normalised.min(), normalised.max()
+    return np.asarray(low + (high - low) * (normalised - least) / (most - least))
+
+
+def combine(candidates: Floats, omega: Floats) -> Floats:
+    """Weighted mean y_COM (2,) of the hypotheses (Q, 2) (eq. weightAverage)."""
+    return np.asarray(omega @ candidates / omega.sum())
+
+
+def average_error(candidates: Floats, omega: Floats, target: Floats) -> float:
+    """E_AV, px^2: weighted mean of the hypotheses' squared errors (eqs. sum-of-squares, average).
+
+    With ``target`` = y_COM in place of the unknown truth it is the spread of the hypotheses.
+
+    Args:
+        candidates: y (Q, 2), px.
+        omega: weights (Q,).
+        target: H (2,), px.
+    """
+    squared = ((candidates - target) ** 2).sum(axis=1)
+    return float(omega @ squared / omega.sum())
+
+
+def combined_error(candidates: Floats, omega: Floats, target: Floats) -> float:
+    """E_COM, px^2: error of the combination if the sub-patches' errors are uncorrelated.
+
+    Eq. expected error under eq. assume: sum(omega_i^2 e_i^2) / W^2, at most E_AV / W since no
+    weight exceeds 1. Arguments as for :func:`average_error`.
+    """
+    squared = ((candidates - target) ** 2).sum(axis=1)
+    return float(omega**2 @ squared / omega.sum() ** 2)
