@@ -1,0 +1,140 @@
+"""The executable ``evaluate``."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import sys
+from pathlib import Path
+
+from het_ros.evaluation import opencv_peers, raw_boxes, report
+from het_ros.evaluation.cache import Cache
+from het_ros.evaluation.jobs import SourceChangedError
+from het_ros.evaluation.protocols import PROTOCOLS
+from het_ros.evaluation.readers import read_sequences
+from het_ros.evaluation.runs import Plan, carry_out_plan
+from het_ros.evaluation.summary import score_runs, summarise
+from het_ros.evaluation.timing import time_trackers
+from het_ros.evaluation.trackers import DEFAULT, TrackerSpec, split_names, tracker_spec
+
+EXAMPLE = """\
+examples:
+  evaluate --data ../shared/sequences --out out/dev --seeds 3
+  evaluate --data ../shared/sequences --out out/try --sequences Crossing,Woman --timing 0 \\
+      --trackers het,het:sub_patches=5,small@het:small.yaml,csrt
+"""
+
+
+def main(arguments: list[str] | None = None) -> int:
+    """Run a comparison; 0 when it came through, 2 when it was asked for wrongly."""
+    options = parser().parse_args(arguments)
+    try:
+        return evaluate(options)
+    except (ValueError, SourceChangedError) as error:
+        print(f"evaluate: {error}", file=sys.stderr)
+        return 2
+    except KeyboardInterrupt:
+        print("evaluate: stopped; the same command goes on from here", file=sys.stderr)
+        return 130
+
+
+def parser() -> argparse.ArgumentParser:
+    """The command line."""
+    p = argparse.ArgumentParser(
+        prog="evaluate",
+        description="Measure trackers on sequences with ground truth, all in one run.",
+        epilog=EXAMPLE,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    p.add_argument("--data", type=Path, required=True, help="folder of sequences (OTB, VOT)")
+    p.add_argument("--out", type=Path, required=True, help="folder for results and cache")
+    p.add_argument(
+        "--trackers",
+        default="",
+        help="comma-separated; het:field=value,... or name@het:file.yaml for a configuration "
+        f"(default: {','.join(DEFAULT)})",
+    )
+    p.add_argument("--seeds", type=_positive, default=1, help="seeds of random trackers (1)")
+    p.add_argument("--protocol", choices=PROTOCOLS, default="ope", help="(ope)")
+    p.add_argument("--sequences", default="", help="comma-separated (default: all)")
+    p.add_argument(
+        "--fps", default="", help="frame rates: 30, or 30,NAME=10 (default: the data's, or 30)"
+    )
+    p.add_argument("--cameras", default="20,30,60", help="frames/s for realtime (20,30,60)")
+    p.add_argument("--jobs", type=_positive, default=1, help="processes on this machine (1)")
+    p.add_argument("--scheduler", default="", help="Dask scheduler, tcp://host:8786")
+    p.add_argument(
+        "--timing",
+        type=int,
+        default=40,
+        metavar="FRAMES",
+        help="frames a sequence that are timed, trackers side by side (40); 0: no timing, "
+        "the speed is then a rough one from the scored runs",
+    )
+    p.add_argument("--published", type=Path, help="JSON of published figures to show beside")
+    p.add_argument("--video", action="store_true", help="one annotated MP4 a sequence")
+    p.add_argument("--quiet", action="store_true", help="no progress bar")
+    return p
+
+
+def evaluate(options: argparse.Namespace) -> int:
+    """Plan, run, score and report."""
+    names = tuple(name for name in options.sequences.split(",") if name)
+    plan = Plan(
+        trackers=_trackers(options.trackers),
+        sequences=read_sequences(options.data, names, _rates(options.fps)),
+        protocol=options.protocol,
+        seeds=options.seeds,
+        cameras=tuple(float(c) for c in options.cameras.split(",")),
+    )
+    cache = Cache(options.out / "cache")
+    runs = carry_out_plan(plan, cache, options.jobs, options.scheduler, options.quiet)
+    seconds = {}
+    if options.timing > 0:
+        seconds = time_trackers(
+            plan.trackers, plan.sequences, options.timing, cache, options.quiet
+        )
+    scored = score_runs(runs, plan.sequences)
+    results = summarise(plan, scored, seconds)
+    options.out.mkdir(parents=True, exist_ok=True)
+    (options.out / "results.json").write_text(json.dumps(results, indent=1) + "\n")
+    raw_boxes.write(runs, {t.name: t.folder for t in plan.trackers}, options.out / "boxes")
+    report.write(results, options.out)
+    print(report.table(results))
+    print(f"\n{options.out / 'results.json'}, report.md")
+    return 0
+
+
+def _trackers(text: str) -> list[TrackerSpec]:
+    if text:
+        specs = [tracker_spec(name) for name in split_names(text)]
+        if len({spec.folder for spec in specs}) < len(specs):
+            raise ValueError(f"--trackers {text} names one twice: label one as label@het:...")
+        return specs
+    present = [n for n in DEFAULT if n.startswith("het") or n in opencv_peers.available()]
+    absent = [n for n in DEFAULT if n not in present]
+    if absent:
+        print(
+            f"evaluate: left out, for they need opencv-contrib: {', '.join(absent)}",
+            file=sys.stderr,
+        )
+    return [tracker_spec(name) for name in present]
+
+
+def _rates(text: str) -> dict[str, float]:
+    rates = {}
+    for part in filter(None, text.split(",")):
+        name, _, value = part.rpartition("=")
+        rates[name] = float(value)
+    return rates
+
+
+def _positive(text: str) -> int:
+    value = int(text)
+    if value < 1:
+        raise argparse.ArgumentTypeError("needs 1 or more")
+    return value
+
+
+if __name__ == "__main__":
+    sys.exit(main())

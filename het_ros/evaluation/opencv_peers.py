@@ -1,0 +1,103 @@
+"""OpenCV's trackers behind ``init`` and ``update``, with their rough edges smoothed."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from het_ros.evaluation.answers import Answer
+from het_ros.tracking.box import Box
+
+ADAPTER = 1  # count up when a change here may change results: cached ones are then run again
+
+
+@dataclass(frozen=True)
+class Peer:
+    """Where a tracker lives in OpenCV.
+
+    Attributes:
+        factory: its function's name.
+        random: whether two runs differ. OpenCV seeds these from elsewhere than its own
+            generator, so a seed stands for a repetition and cannot be called back.
+        whole: whether it takes boxes of whole pixels only (the API since OpenCV 4.5.1).
+    """
+
+    factory: str
+    random: bool
+    whole: bool
+
+    def find(self) -> Callable[[], Any] | None:
+        """The function, or None when this OpenCV has no such tracker."""
+        place: Any = cv2
+        for part in self.factory.split("."):
+            place = getattr(place, part, None)
+        return place
+
+
+PEERS = {
+    "csrt": Peer("TrackerCSRT_create", random=False, whole=True),
+    "kcf": Peer("TrackerKCF_create", random=False, whole=True),
+    "mil": Peer("TrackerMIL_create", random=True, whole=True),
+    "boosting": Peer("legacy.TrackerBoosting_create", random=False, whole=False),
+    "tld": Peer("legacy.TrackerTLD_create", random=True, whole=False),
+    "medianflow": Peer("legacy.TrackerMedianFlow_create", random=False, whole=False),
+    "mosse": Peer("legacy.TrackerMOSSE_create", random=False, whole=False),
+}
+
+
+def version() -> str:
+    """What the peers' results depend on."""
+    return f"opencv {cv2.__version__} adapter {ADAPTER}"
+
+
+def available() -> list[str]:
+    """The peers that this OpenCV has."""
+    return [name for name, peer in PEERS.items() if peer.find()]
+
+
+def require(name: str) -> None:
+    """Raise ValueError, saying what to do, when this OpenCV lacks a peer."""
+    if not PEERS[name].find():
+        raise ValueError(
+            f"{name} is not in this OpenCV ({cv2.__version__}): install "
+            "opencv-contrib-python-headless in place of opencv-python-headless, as "
+            "`make evaluate` does in an environment of its own"
+        )
+
+
+class OpenCvTracker:
+    """One of OpenCV's trackers.
+
+    OpenCV says of a frame whether the target was found; that becomes TRACKING or LOST. When it
+    was not, the box of the frame before is kept, as OTB's toolkit does.
+    """
+
+    def __init__(self, name: str, seed: int) -> None:
+        require(name)
+        self._peer = PEERS[name]
+        self._seed = seed
+
+    def init(self, image: NDArray[np.uint8], box: Box) -> None:
+        """Start on a box, rounded to whole px where the tracker takes no other."""
+        cv2.setRNGSeed(self._seed)
+        create = self._peer.find()
+        assert create is not None
+        self._tracker = create()
+        rectangle = box.as_tuple()
+        if self._peer.whole:
+            rectangle = tuple(round(value) for value in rectangle)
+        # The old API answers False, the new one None; both raise cv2.error on bad boxes.
+        if self._tracker.init(np.ascontiguousarray(image), rectangle) is False:
+            raise RuntimeError(f"{self._peer.factory} refused the box {rectangle}")
+
+    def update(self, image: NDArray[np.uint8], dt: float) -> Answer:
+        """Follow into the next image; ``dt`` is of no use to these."""
+        found, box = self._tracker.update(image)
+        if not found:
+            return Answer(None, "LOST")
+        return Answer(tuple(float(value) for value in box), "TRACKING")

@@ -1,0 +1,216 @@
+"""What can be compared: every tracker behind the same two methods, and how to name one."""
+
+from __future__ import annotations
+
+import dataclasses
+import hashlib
+import json
+import re
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cache, partial
+from pathlib import Path
+from typing import Any, Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+import het_ros.tracking
+from het_ros.evaluation import opencv_peers
+from het_ros.evaluation.answers import Answer
+from het_ros.tracking.box import Box
+from het_ros.tracking.config import TrackerConfig
+from het_ros.tracking.parameter import Parameter, parameters_of
+from het_ros.tracking.tracker import HierarchicalEnsembleTracker
+
+
+class Tracker(Protocol):
+    """The two methods of everything that is measured. It gets images and nothing else."""
+
+    def init(self, image: NDArray[np.uint8], box: Box) -> None:
+        """Start on ``box`` in an (H, W, 3) uint8 BGR image."""
+
+    def update(self, image: NDArray[np.uint8], dt: float) -> Answer:
+        """Follow into the next image, ``dt`` s later."""
+
+
+@dataclass(frozen=True)
+class TrackerSpec:
+    """A tracker that can be built anywhere: in this process, in another, on a cluster.
+
+    Attributes:
+        name: what tables call it.
+        build: makes the tracker from a seed; picklable.
+        fingerprint: changes whenever the results may: configuration, source, library version.
+        random: whether the seed matters, so that several seeds are worth their time.
+        source: for het, the hash of the tracking package that it must run with; else "".
+    """
+
+    name: str
+    build: Callable[[int], Tracker]
+    fingerprint: str
+    random: bool = True
+    source: str = ""
+
+    @property
+    def folder(self) -> str:
+        """The name as a folder's name."""
+        return re.sub(r"[^\w.=+-]+", "_", self.name)
+
+
+class Het:
+    """The Hierarchical Ensemble Tracker."""
+
+    def __init__(self, config: TrackerConfig) -> None:
+        self._tracker = HierarchicalEnsembleTracker(config)
+
+    def init(self, image: NDArray[np.uint8], box: Box) -> None:
+        """Start on a box."""
+        self._tracker.reset()
+        self._tracker.init(image, box)
+
+    def update(self, image: NDArray[np.uint8], dt: float) -> Answer:
+        """Follow into the next image."""
+        e = self._tracker.update(image, dt)
+        return Answer(e.box.as_tuple(), e.state.value, e.score, e.velocity, e.covariance)
+
+
+class Identity:
+    """Says that nothing ever moves: what any tracker has to beat."""
+
+    def init(self, image: NDArray[np.uint8], box: Box) -> None:
+        """Keep the box."""
+        self._box = box.as_tuple()
+
+    def update(self, image: NDArray[np.uint8], dt: float) -> Answer:
+        """Return the first box."""
+        return Answer(self._box)
+
+
+def seeded_het(config: TrackerConfig, seed: int) -> Het:
+    """Het with the configuration's seed moved on by ``seed``."""
+    return Het(dataclasses.replace(config, seed=config.seed + seed))
+
+
+@cache
+def tracking_source() -> str:
+    """Hash of the tracking package's source, as it was when this process first asked."""
+    folder = Path(het_ros.tracking.__file__).parent
+    digest = hashlib.sha256()
+    for file in sorted(folder.rglob("*.py")):
+        digest.update(file.relative_to(folder).as_posix().encode() + file.read_bytes())
+    return digest.hexdigest()[:16]
+
+
+BASES: dict[str, Callable[[], TrackerConfig]] = {
+    "het": TrackerConfig,
+    "het-paper": TrackerConfig.paper,
+}
+DEFAULT = ("het", "het-paper", *opencv_peers.PEERS)
+
+
+def split_names(text: str) -> list[str]:
+    """Split a comma-separated list of trackers, keeping the commas inside a configuration.
+
+    >>> split_names("het,het:sub_patches=5,seed=3,csrt")
+    ['het', 'het:sub_patches=5,seed=3', 'csrt']
+    """
+    names: list[str] = []
+    for piece in (part.strip() for part in text.split(",")):
+        if names and "=" in piece and ":" not in piece and ":" in names[-1]:
+            names[-1] += f",{piece}"
+        elif piece:
+            names.append(piece)
+    return names
+
+
+def tracker_spec(name: str) -> TrackerSpec:
+    """The tracker called ``name``.
+
+    Names: ``het``, ``het-paper``, ``identity``, a peer of OpenCV (``csrt``...), or a base with
+    changes: ``het:sub_patches=5,seed=3`` or ``het:file.yaml`` (also JSON; a mapping of fields,
+    or a ROS parameter file). ``label@het:...`` calls it ``label`` in the tables.
+
+    Raises:
+        ValueError: there is no such tracker, field or file, or a value is out of its range.
+    """
+    label, _, described = name.rpartition("@")
+    base, _, changes = described.partition(":")
+    if base in BASES:
+        config = _changed(BASES[base](), changes)
+        values = json.dumps(dataclasses.asdict(config), sort_keys=True)
+        fingerprint = _hash(f"{values} {tracking_source()}")
+        return TrackerSpec(
+            label or described, partial(seeded_het, config), fingerprint, source=tracking_source()
+        )
+    if base == "identity":
+        return TrackerSpec(label or name, _identity, "identity", random=False)
+    if base in opencv_peers.PEERS:
+        opencv_peers.require(base)
+        peer = opencv_peers.PEERS[base]
+        build = partial(opencv_peers.OpenCvTracker, base)
+        fingerprint = _hash(f"{base} {opencv_peers.version()}")
+        return TrackerSpec(label or name, build, fingerprint, random=peer.random)
+    known = ", ".join((*DEFAULT, "identity"))
+    raise ValueError(f"no tracker is called {base!r}; there are {known}")
+
+
+def _identity(seed: int) -> Identity:
+    return Identity()
+
+
+def _hash(text: str) -> str:
+    return hashlib.sha256(text.encode()).hexdigest()[:16]
+
+
+def _changed(config: TrackerConfig, changes: str) -> TrackerConfig:
+    if not changes:
+        return config
+    table = {p.name: p for p in parameters_of(TrackerConfig)}
+    if Path(changes).suffix in {".yaml", ".yml", ".json"}:
+        values = _read_file(Path(changes))
+    else:
+        pairs = [pair.partition("=") for pair in changes.split(",")]
+        values = {key.strip(): text.strip() for key, _, text in pairs}
+    unknown = [key for key in values if key not in table]
+    if unknown:
+        raise ValueError(f"TrackerConfig has no {', '.join(unknown)}; it has {', '.join(table)}")
+    return dataclasses.replace(
+        config, **{key: parsed(table[key], value) for key, value in values.items()}
+    )
+
+
+def parsed(declared: Parameter, value: Any) -> Any:
+    """A parameter's value from text (a tuple's items joined by ``+``) or from a file."""
+    kind = type(declared.default)
+    if isinstance(value, list):
+        return tuple(value)
+    if not isinstance(value, str) or kind is str:
+        return float(value) if kind is float and isinstance(value, int) else value
+    if kind is tuple:
+        return tuple(item for item in value.split("+") if item)
+    if kind is bool:
+        words = {"true": True, "1": True, "false": False, "0": False}
+        if value.lower() not in words:
+            raise ValueError(f"{declared.name} takes true or false, not {value!r}")
+        return words[value.lower()]
+    try:
+        return kind(value)
+    except ValueError:
+        raise ValueError(f"{declared.name} takes a {kind.__name__}, not {value!r}") from None
+
+
+def _read_file(file: Path) -> dict[str, Any]:
+    import yaml  # only needed for configurations in files
+
+    if not file.is_file():
+        raise ValueError(f"there is no configuration file {file}")
+    content = yaml.safe_load(file.read_text())
+    while isinstance(content, dict) and len(content) == 1:
+        inner = next(iter(content.values()))  # ROS: {node: {ros__parameters: {...}}}
+        if not isinstance(inner, dict):
+            break
+        content = inner
+    if not isinstance(content, dict):
+        raise ValueError(f"{file} is no mapping of fields to values")
+    return content
