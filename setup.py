@@ -19,8 +19,9 @@ EXTRAS = {
         "ros-jazzy-rclpy>=7.1,<8",
         "ros-jazzy-common-interfaces>=5.3,<6",
         "ros-jazzy-rmw-fastrtps-cpp>=8.4,<9",
-        "opencv-python-headless>=4.6",
     ],
+    # One cv2 package an environment: this one, or the contrib one of `evaluate`.
+    "opencv": ["opencv-python-headless>=4.6"],
     # Reading, writing, playing and drawing bags.
     "bags": ["rosbags>=0.10,<0.12", "tqdm>=4.60", "matplotlib>=3.5", "av>=10"],
     # Benchmark with OpenCV's trackers, in an environment of its own: its cv2 is the contrib one.

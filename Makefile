@@ -1,0 +1,106 @@
+# Everything from a fresh clone: `make run` and `make test` do their own set-up, once.
+# Needs git, make, and Python 3.10 to 3.12 with its venv module; writes inside the checkout only.
+SHELL := /bin/bash
+.SHELLFLAGS := -e -o pipefail -c
+.DEFAULT_GOAL := help
+.NOTPARALLEL:
+
+PYTHON ?= python3
+VENV := .venv
+PEERS := .venv-peers
+VENV_EXTRAS := ros,opencv,bags,test,build
+PEERS_EXTRAS := ros,bags,evaluate
+BUILT := install/.built
+SOURCES := $(shell find het_ros config launch resource -type f -not -name '*.pyc' 2>/dev/null)
+
+# The order matters: the venv's Python, then its ROS packages, then this workspace over them.
+# A sourced ROS from apt would mix two Pythons' packages, so its variables are left outside.
+CLEAN := unset PYTHONPATH PYTHONHOME LD_LIBRARY_PATH COLCON_PREFIX_PATH ROS_DISTRO
+ROS := $(CLEAN); source $(VENV)/bin/activate; export AMENT_PREFIX_PATH="$$VIRTUAL_ENV"
+WORKSPACE := $(ROS); source install/setup.bash
+PEERS_SPACE := $(CLEAN); source $(PEERS)/bin/activate; export AMENT_PREFIX_PATH="$$VIRTUAL_ENV"; \
+	source install/setup.bash
+
+.PHONY: help setup build run test evaluate bench fuzz soak docs format clean
+
+help: ## What there is to make
+	@grep -E '^[a-z]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:[^#]*## /\t/' | expand -t 12
+	@echo
+	@echo 'make run [VIDEO=file INIT=x,y,w,h | SEQUENCE=folder] [OUT=out/run]'
+	@echo 'make evaluate DATA=folder [OUT=out/evaluate] [TRACKERS=het,csrt] [SEEDS=3]'
+	@echo '     [PROTOCOL=ope|tre|sre|realtime|restart] [SEQUENCES=a,b] [SCHEDULER=tcp://host:8786]'
+	@echo 'make bench [OUT=out/bench] [DATA=folder]; make fuzz|soak [MINUTES=5]'
+
+# Set-up -------------------------------------------------------------------------------------
+
+setup: $(VENV)/.ready ## The environment .venv: ROS 2 Jazzy and all that runs and tests it
+build: $(BUILT) ## colcon build into install/
+
+define make_venv
+	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 10))' || \
+		{ echo "$(PYTHON) is too old or missing: install Python 3.10 to 3.12, or name it: make PYTHON=python3.12"; exit 1; }
+	@$(PYTHON) -c 'import venv, ensurepip' 2>/dev/null || \
+		{ echo "Python's venv module is missing: sudo apt install python3-venv"; exit 1; }
+	test -x $(1)/bin/python || $(PYTHON) -m venv $(1)
+	$(CLEAN); $(1)/bin/python -m pip install --quiet --disable-pip-version-check -e '.[$(2)]'
+	@touch $(1)/.ready
+endef
+
+$(VENV)/.ready: setup.py
+	@echo 'Setting up $(VENV): ROS 2 Jazzy and tools from PyPI, about a minute and 1 GB'
+	$(call make_venv,$(VENV),$(VENV_EXTRAS))
+
+$(PEERS)/.ready: setup.py
+	@echo 'Setting up $(PEERS): the same with the OpenCV that has the peers (opencv-contrib)'
+	$(call make_venv,$(PEERS),$(PEERS_EXTRAS))
+
+$(BUILT): $(VENV)/.ready package.xml setup.py setup.cfg $(SOURCES)
+	$(ROS); colcon build --packages-select het_ros --event-handlers console_stderr- summary-
+	@touch $@
+
+# Use ----------------------------------------------------------------------------------------
+
+VIDEO ?=
+INIT ?=
+SEQUENCE ?=
+RUN_OPTIONS = $(if $(VIDEO),--video '$(VIDEO)') $(if $(INIT),--init '$(INIT)') \
+	$(if $(SEQUENCE),--sequence '$(SEQUENCE)')
+
+run: OUT ?= out/run
+run: $(BUILT) ## Follow the target of the recorded bag, or of your own footage; look into out/run
+	@$(WORKSPACE); python -m het_ros.tools.run --out '$(OUT)' $(RUN_OPTIONS)
+
+test: $(BUILT) ## All that CI runs: style, types, import contracts, package.xml, tests
+	$(WORKSPACE); ruff check .
+	$(WORKSPACE); ruff format --check --quiet .
+	$(WORKSPACE); mypy
+	$(WORKSPACE); lint-imports
+	$(WORKSPACE); python -c 'from catkin_pkg.package import parse_package as p; print("package.xml is valid:", p("package.xml", warnings=[]))'
+	$(WORKSPACE); python -m pytest $(PYTEST)
+
+DATA ?=
+PEER_OPTIONS = $(if $(TRACKERS),--trackers '$(TRACKERS)') $(if $(SEEDS),--seeds $(SEEDS)) \
+	$(if $(PROTOCOL),--protocol $(PROTOCOL)) $(if $(SEQUENCES),--sequences '$(SEQUENCES)') \
+	$(if $(SCHEDULER),--scheduler '$(SCHEDULER)') $(if $(PUBLISHED),--published '$(PUBLISHED)')
+
+evaluate: OUT ?= out/evaluate
+evaluate: $(BUILT) $(PEERS)/.ready ## Score this tracker and OpenCV's on DATA=folder
+	@test -n '$(DATA)' || { echo 'make evaluate DATA=folder: name a folder of sequences (OTB or VOT layout)'; exit 2; }
+	@$(PEERS_SPACE); python -m het_ros.evaluation.cli --data '$(DATA)' --out '$(OUT)' $(PEER_OPTIONS) $(EVALUATE)
+
+bench: OUT ?= out/bench
+bench: $(BUILT) $(PEERS)/.ready ## Speed of the core and of the node, as ratios to the peers
+	@$(PEERS_SPACE); python -m het_ros.tools.bench --out '$(OUT)' $(if $(DATA),--data '$(DATA)') $(BENCH)
+
+MINUTES ?= 5
+fuzz: $(BUILT) ## Random and broken input, MINUTES long
+	@$(WORKSPACE); python -m het_ros.tools.fuzz --minutes $(MINUTES)
+
+soak: $(BUILT) ## The node at 30 frames/s, MINUTES long: memory, latency, file descriptors
+	@$(WORKSPACE); python -m het_ros.tools.soak --minutes $(MINUTES)
+
+format: $(VENV)/.ready ## Format the code
+	$(ROS); ruff check --fix .; ruff format .
+
+clean: ## Remove what was built and measured; the environments stay
+	rm -rf build install log out
