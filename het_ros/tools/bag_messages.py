@@ -48,10 +48,10 @@ def image_message(image: NDArray[np.uint8], stamp: int, frame_id: str) -> Any:
     )
 
 
-def compressed_image_message(jpeg: bytes, stamp: int, frame_id: str) -> Any:
-    """sensor_msgs/CompressedImage of a JPEG file's bytes."""
+def compressed_image_message(data: bytes, stamp: int, frame_id: str, kind: str = "jpeg") -> Any:
+    """sensor_msgs/CompressedImage of the bytes of a JPEG or PNG file."""
     return _TYPES[COMPRESSED_IMAGE](
-        header=header(stamp, frame_id), format="jpeg", data=np.frombuffer(jpeg, np.uint8)
+        header=header(stamp, frame_id), format=kind, data=np.frombuffer(data, np.uint8)
     )
 
 

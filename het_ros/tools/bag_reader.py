@@ -1,0 +1,147 @@
+"""Read rosbag2 bags: CDR bytes to play, frames and ground truth to look at."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+from types import TracebackType
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+from rosbags.highlevel import AnyReader, AnyReaderError
+
+from het_ros.ros.images import decode, to_array
+from het_ros.tools.bag_messages import (
+    COMPRESSED_IMAGE,
+    IMAGE,
+    POLYGON,
+    TRUTH_BOX_TOPIC,
+    box_of,
+    stamp_of,
+)
+from het_ros.tools.bag_writer import TYPESTORE
+from het_ros.tracking.box import Box
+
+
+class BagError(ValueError):
+    """A bag that cannot be used; the text says why and what to do."""
+
+
+class Recorded(NamedTuple):
+    """A message as it lies in the bag.
+
+    Attributes:
+        topic: its topic.
+        kind: its type, e.g. "sensor_msgs/msg/Image".
+        time: when it was recorded, ns.
+        cdr: its bytes.
+    """
+
+    topic: str
+    kind: str
+    time: int
+    cdr: bytes
+
+
+class BagReader:
+    """An open bag.
+
+    Args:
+        path: folder of the bag.
+        image_topic: which images to take; by default the bag's only ones, or "/image".
+
+    Attributes:
+        topics: type of each topic.
+        counts: number of messages of each topic.
+        image_topic: topic of the images; empty when there are none.
+
+    Raises:
+        BagError: there is no bag at ``path``, it is broken, or has several image topics.
+    """
+
+    def __init__(self, path: Path | str, image_topic: str | None = None) -> None:
+        self.path = Path(path)
+        if not (self.path / "metadata.yaml").is_file():
+            raise BagError(f"{path} is no rosbag2: there is no metadata.yaml in that folder")
+        try:
+            self._reader = AnyReader([self.path], default_typestore=TYPESTORE)
+            self._reader.open()
+        except (AnyReaderError, OSError) as error:
+            raise BagError(f"{path} cannot be read as a bag: {error}") from None
+        connections = self._reader.connections
+        self.topics = {connection.topic: connection.msgtype for connection in connections}
+        self.counts = {connection.topic: connection.msgcount for connection in connections}
+        self.image_topic = self._find_images(image_topic)
+
+    def __enter__(self) -> BagReader:
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        self._reader.close()
+
+    def _find_images(self, wanted: str | None) -> str:
+        found = [t for t, kind in self.topics.items() if kind in (IMAGE, COMPRESSED_IMAGE)]
+        if wanted is not None:
+            if wanted not in found:
+                listed = ", ".join(found) or "none"
+                raise BagError(f"{self.path} has no images on {wanted}; it has {listed}")
+            return wanted
+        preferred = [topic for topic in found if topic in ("/image", "/image/compressed")]
+        if len(found) > 1 and len(preferred) != 1:
+            raise BagError(f"{self.path} has images on {', '.join(found)}: say which to take")
+        return (preferred or found or [""])[0]
+
+    @property
+    def frames(self) -> int:
+        """Number of images."""
+        return self.counts.get(self.image_topic, 0)
+
+    @property
+    def compressed(self) -> bool:
+        """Whether the images are CompressedImage."""
+        return self.topics.get(self.image_topic) == COMPRESSED_IMAGE
+
+    def type_hash(self, topic: str) -> str:
+        """REP-2011 hash of the topic's type as the bag defines it."""
+        return self._reader.typestore.hash_rihs01(self.topics[topic])
+
+    def recorded(self, *topics: str) -> Iterator[Recorded]:
+        """Messages of some topics (all if none is named) in the order of recording."""
+        chosen = [c for c in self._reader.connections if not topics or c.topic in topics]
+        if not chosen:
+            return
+        for connection, time, cdr in self._reader.messages(connections=chosen):
+            yield Recorded(connection.topic, connection.msgtype, time, bytes(cdr))
+
+    def messages(self, *topics: str) -> Iterator[tuple[str, Any]]:
+        """Topic and decoded message, in the order of recording."""
+        for recorded in self.recorded(*topics):
+            yield recorded.topic, self._reader.deserialize(recorded.cdr, recorded.kind)
+
+    def images(self) -> Iterator[tuple[int, NDArray[np.uint8]]]:
+        """Header stamp (ns) and pixels, (H, W, 3) BGR or (H, W) gray uint8, of each image."""
+        read = decode if self.compressed else to_array
+        for _, message in self.messages(self.image_topic):
+            yield stamp_of(message), read(message)
+
+    def stamps(self) -> list[int]:
+        """Header stamps of the images, ns, in the order of recording."""
+        return [header_stamp(recorded.cdr) for recorded in self.recorded(self.image_topic)]
+
+    def truth(self) -> dict[int, Box]:
+        """Ground-truth boxes by header stamp; empty if the bag has none."""
+        if self.topics.get(TRUTH_BOX_TOPIC) != POLYGON:
+            return {}
+        return {stamp_of(m): box_of(m) for _, m in self.messages(TRUTH_BOX_TOPIC)}
+
+
+def header_stamp(cdr: bytes) -> int:
+    """Stamp (ns) of a message that begins with a std_msgs/Header, from its little-endian CDR."""
+    seconds = int.from_bytes(cdr[4:8], "little", signed=True)
+    return seconds * 10**9 + int.from_bytes(cdr[8:12], "little")

@@ -1,0 +1,173 @@
+"""Play a bag's images and boxes to a running tracker in real time, and record its answers."""
+
+from __future__ import annotations
+
+import argparse
+import os
+import sys
+import time
+from collections.abc import Callable, Sequence
+from pathlib import Path
+
+import rclpy
+from rclpy.executors import SingleThreadedExecutor
+from rclpy.signals import SignalHandlerOptions
+from tqdm import tqdm
+
+from het_ros.tools.bag_reader import BagReader, header_stamp
+from het_ros.tools.bag_writer import BagWriter
+from het_ros.tools.interrupt import StopRequest
+from het_ros.tools.make_bag import parse_box
+from het_ros.tools.outputs import DEFAULT_TRACKER
+from het_ros.tools.player import LONGEST_SPIN, NobodyListensError, Player, Spin
+from het_ros.tools.recorder import Recorder
+from het_ros.tools.report import ResultsFolder, Summary, write_report
+from het_ros.tools.transport import use_profile
+from het_ros.tracking.box import Box
+
+WAIT = 10.0  # s for the tracker to be there
+SETTLE = 0.1  # s for its publishers to know our subscriptions, once we know them
+LAST_ANSWER = 2.0  # s of silence after which no more answers are expected
+
+EXAMPLE = """example, in two terminals:
+  ros2 run het_ros tracker --ros-args -p image_transport:=compressed
+  python -m het_ros.tools.play bags/follow_walk --out out/play
+
+Topics are remapped like any node's: add --ros-args -r /image:=/camera/image_raw
+"""
+
+
+def play(
+    bag: BagReader,
+    folder: ResultsFolder,
+    *,
+    tracker: str = DEFAULT_TRACKER,
+    rate: float = 1.0,
+    init: Box | None = None,
+    wait: float = WAIT,
+    ros_arguments: Sequence[str] = (),
+    alive: Callable[[], None] = lambda: None,
+) -> tuple[Summary, bool]:
+    """Play a bag to a tracker that runs elsewhere and write the results.
+
+    Args:
+        bag: what to play.
+        folder: where results go.
+        tracker: full name of the tracker's node.
+        rate: 1 is real time, 2 twice as fast.
+        init: target in the first frame, px; by default the bag's own init box.
+        wait: s for the tracker to be there.
+        ros_arguments: of the playing node, from ``--ros-args`` on.
+        alive: called often; may raise when playing on makes no sense.
+
+    Returns:
+        The summary, and whether the whole bag was played (False after Ctrl-C).
+
+    Raises:
+        BagError: the bag cannot be played.
+        NobodyListensError: no tracker was there.
+    """
+    if not 0 < rate < float("inf"):
+        raise ValueError(f"a rate of {rate:g} makes no sense: 1 is real time, 2 twice as fast")
+    use_profile()
+    folder.clear()
+    rclpy.init(args=list(ros_arguments), signal_handler_options=SignalHandlerOptions.NO)
+    try:
+        node = rclpy.create_node("het_ros_play")
+        executor = SingleThreadedExecutor()
+        executor.add_node(node)
+
+        def spin(seconds: float) -> None:
+            alive()
+            executor.spin_once(timeout_sec=seconds)
+
+        with StopRequest() as stop, BagWriter(folder.bag) as recording:
+            player = Player(node, bag, init)
+            recorder = Recorder(node, recording, tracker)
+            player.wait_for_subscriber(spin, wait, stop)
+            _wait_for_tracker(recorder, tracker, spin, wait, stop)
+            stamps = _play_and_record(player, recorder, spin, rate, stop)
+    finally:
+        rclpy.try_shutdown()
+    return write_report(bag, stamps, folder, tracker), not stop
+
+
+def _wait_for_tracker(
+    recorder: Recorder, tracker: str, spin: Spin, seconds: float, stop: StopRequest
+) -> None:
+    end = time.monotonic() + seconds
+    while not stop and not recorder.connected:
+        if time.monotonic() > end:
+            raise NobodyListensError(
+                f"somebody takes the images, but no {tracker}/status is published: "
+                "give the tracker's name with --tracker /namespace/name"
+            )
+        spin(LONGEST_SPIN)
+    _spin_for(SETTLE, spin, stop)
+
+
+def _spin_for(seconds: float, spin: Spin, stop: StopRequest) -> None:
+    end = time.monotonic() + seconds
+    while not stop and (left := end - time.monotonic()) > 0:
+        spin(min(left, LONGEST_SPIN))
+
+
+def _play_and_record(
+    player: Player, recorder: Recorder, spin: Spin, rate: float, stop: StopRequest
+) -> list[int]:
+    """Play to the end and wait for the last answer; return the images' stamps, ns."""
+    stamps: list[int] = []
+    with tqdm(total=player.bag.frames, desc="play", unit="frame", delay=2) as progress:
+        for recorded in player.in_real_time(spin, rate, stop):
+            if recorded.topic == player.bag.image_topic:
+                stamps.append(header_stamp(recorded.cdr))
+                progress.update()
+    last_news, answers = time.monotonic(), len(recorder.answered)
+    while not stop and stamps and stamps[-1] not in recorder.answered:
+        spin(LONGEST_SPIN)
+        if len(recorder.answered) > answers:
+            last_news, answers = time.monotonic(), len(recorder.answered)
+        if time.monotonic() - last_news > LAST_ANSWER:
+            break
+    return stamps
+
+
+def main(argv: Sequence[str] | None = None) -> int:
+    """Command line."""
+    arguments = list(sys.argv[1:] if argv is None else argv)
+    cut = arguments.index("--ros-args") if "--ros-args" in arguments else len(arguments)
+    parser = argparse.ArgumentParser(
+        prog="play",
+        description=__doc__,
+        epilog=EXAMPLE,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    parser.add_argument("bag", type=Path, help="folder of a rosbag2")
+    parser.add_argument("--out", type=Path, default=Path("out/play"), help="results folder")
+    parser.add_argument("--rate", type=float, default=1.0, help="2 plays twice as fast")
+    parser.add_argument("--image-topic", help="which images, if the bag has several")
+    parser.add_argument("--init", type=parse_box, help="x,y,w,h of the target in the first frame")
+    parser.add_argument("--tracker", default=DEFAULT_TRACKER, help="the tracker node's full name")
+    parser.add_argument("--wait", type=float, default=WAIT, help="s to wait for the tracker")
+    options = parser.parse_args(arguments[:cut])
+    folder = ResultsFolder(options.out)
+    try:
+        with BagReader(options.bag, options.image_topic) as bag:
+            summary, whole = play(
+                bag,
+                folder,
+                tracker=options.tracker,
+                rate=options.rate,
+                init=options.init,
+                wait=options.wait,
+                ros_arguments=arguments[cut:],
+            )
+    except (OSError, ValueError, NobodyListensError) as error:
+        print(f"play: {error}", file=sys.stderr)
+        return 1
+    print("\n".join([*summary.lines(), f"results   {folder.path}"]))
+    return 0 if whole else 130
+
+
+if __name__ == "__main__":
+    sys.exit(main())

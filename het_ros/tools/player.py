@@ -1,0 +1,151 @@
+"""Publish a bag's images and boxes, byte by byte as they were recorded."""
+
+from __future__ import annotations
+
+import os
+import time
+from collections.abc import Callable, Iterator
+
+from rclpy.node import Node
+from rclpy.qos import QoSProfile, ReliabilityPolicy
+
+from het_ros.tools.bag_messages import (
+    COMPRESSED_IMAGE,
+    IMAGE,
+    INIT_BOX_TOPIC,
+    POLYGON,
+    box_message,
+)
+from het_ros.tools.bag_reader import BagError, BagReader, Recorded, header_stamp
+from het_ros.tools.bag_writer import TYPESTORE
+from het_ros.tools.interrupt import StopRequest
+from het_ros.tools.message_types import check_types, message_class
+from het_ros.tracking.box import Box
+
+PLAYED_TYPES = (
+    IMAGE,
+    COMPRESSED_IMAGE,
+    POLYGON,
+    "sensor_msgs/msg/CameraInfo",
+    "sensor_msgs/msg/RegionOfInterest",
+)
+QOS = QoSProfile(depth=10, reliability=ReliabilityPolicy.RELIABLE)
+LONGEST_SPIN = 0.05  # s; so long may Ctrl-C take to be noticed
+
+Spin = Callable[[float], None]
+
+
+class NobodyListensError(RuntimeError):
+    """Nobody subscribed to what was to be played."""
+
+
+def timeline(bag: BagReader, init: Box | None = None) -> Iterator[Recorded]:
+    """What is to be played of a bag, in the order of recording.
+
+    Args:
+        bag: its image, camera info and box topics are taken.
+        init: a target to start with, px; it is put after the first image, with its stamp, and
+            the bag's own init boxes are left out.
+
+    Raises:
+        BagError: the bag has no images, or a type that is not ROS 2 Jazzy's.
+    """
+    topics = played_topics(bag, init)
+    check_types(bag, [topic for topic in topics if topic in bag.topics])
+    for recorded in bag.recorded(*(topic for topic in topics if topic in bag.topics)):
+        if init and recorded.topic == INIT_BOX_TOPIC:
+            continue
+        yield recorded
+        if init and recorded.topic == bag.image_topic:
+            message = box_message(init, header_stamp(recorded.cdr), "")
+            cdr = bytes(TYPESTORE.serialize_cdr(message, POLYGON))
+            yield Recorded(INIT_BOX_TOPIC, POLYGON, recorded.time, cdr)
+            init = None
+
+
+def played_topics(bag: BagReader, init: Box | None = None) -> dict[str, str]:
+    """Topic and type of all that :func:`timeline` yields.
+
+    Raises:
+        BagError: the bag has no images.
+    """
+    if not bag.image_topic:
+        listed = ", ".join(bag.topics) or "nothing"
+        raise BagError(f"{bag.path} has no images to play; it holds {listed}")
+    topics = {topic: kind for topic, kind in bag.topics.items() if kind in PLAYED_TYPES}
+    return topics | {INIT_BOX_TOPIC: POLYGON} if init else topics
+
+
+class Player:
+    """The publishers of one bag.
+
+    Args:
+        node: makes the publishers.
+        bag: what to play, see :func:`timeline`.
+        init: a target to start with instead of the bag's own.
+
+    Raises:
+        BagError: the bag has no images, or a type that is not ROS 2 Jazzy's.
+    """
+
+    def __init__(self, node: Node, bag: BagReader, init: Box | None = None) -> None:
+        self.bag = bag
+        self.init = init
+        topics = played_topics(bag, init)
+        self._publishers = {
+            topic: node.create_publisher(message_class(kind), topic, QOS)
+            for topic, kind in topics.items()
+        }
+
+    def wait_for_subscriber(self, spin: Spin, seconds: float, stop: StopRequest) -> None:
+        """Return as soon as somebody takes the images and, if there is one, the init box.
+
+        Raises:
+            NobodyListensError: nobody came; the text says what to look at.
+        """
+        boxes = [topic for topic in self._publishers if topic.endswith("/init_box")]
+        needed = [self.bag.image_topic, *boxes]
+        end = time.monotonic() + seconds
+        while not stop:
+            missing = [t for t in needed if not self._publishers[t].get_subscription_count()]
+            if not missing:
+                return
+            if time.monotonic() > end:
+                raise NobodyListensError(_nobody(missing, seconds, self.bag))
+            spin(LONGEST_SPIN)
+
+    def publish(self, recorded: Recorded) -> None:
+        """Send one message as it is."""
+        self._publishers[recorded.topic].publish(recorded.cdr)
+
+    def in_real_time(self, spin: Spin, rate: float, stop: StopRequest) -> Iterator[Recorded]:
+        """Publish every message when it is due and hand it on.
+
+        Args:
+            spin: serves other callbacks for at most so many seconds.
+            rate: 1 is real time, 2 twice as fast.
+            stop: ends the play.
+        """
+        first: int | None = None
+        began = time.monotonic()
+        for recorded in timeline(self.bag, self.init):
+            first = recorded.time if first is None else first
+            due = began + (recorded.time - first) * 1e-9 / rate
+            while not stop and (left := due - time.monotonic()) > 0:
+                spin(min(left, LONGEST_SPIN))
+            if stop:
+                return
+            self.publish(recorded)
+            yield recorded
+
+
+def _nobody(missing: list[str], seconds: float, bag: BagReader) -> str:
+    domain = os.environ.get("ROS_DOMAIN_ID", "0")
+    text = (
+        f"nobody subscribed to {' and '.join(missing)} within {seconds:g} s "
+        f"(ROS_DOMAIN_ID {domain}): start the tracker first"
+    )
+    if bag.image_topic in missing:
+        kind = "CompressedImage" if bag.compressed else "Image"
+        text += f", let it take {kind}, and remap its image topic to {bag.image_topic}"
+    return text

@@ -1,0 +1,62 @@
+"""Record what a tracker publishes, with the stamps of its input."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+from rclpy.node import Node
+from rclpy.qos import QoSProfile, ReliabilityPolicy
+
+from het_ros.tools.bag_reader import header_stamp
+from het_ros.tools.bag_writer import BagWriter
+from het_ros.tools.message_types import message_class
+from het_ros.tools.outputs import DEFAULT_TRACKER, OUTPUT_TYPES
+
+QOS = QoSProfile(depth=1000, reliability=ReliabilityPolicy.RELIABLE)
+
+
+class Recorder:
+    """Writes a tracker's outputs into a bag as they come in, CDR bytes as they are.
+
+    Each message is logged at its header's stamp, that is at the time of the image that it answers:
+    the recording lies over its input and does not depend on how fast the input was played.
+
+    Args:
+        node: makes the subscriptions; somebody spins it.
+        bag: open bag to write to.
+        tracker: full name of the tracker's node.
+
+    Attributes:
+        answered: stamps (ns) of the frames for which a status came.
+    """
+
+    def __init__(self, node: Node, bag: BagWriter, tracker: str = DEFAULT_TRACKER) -> None:
+        self._bag = bag
+        self.answered: set[int] = set()
+        self._status_topic = f"{tracker}/status"
+        self._subscriptions = [
+            self._subscribe(node, f"{tracker}/{name}", kind) for name, kind in OUTPUT_TYPES.items()
+        ]
+
+    @property
+    def connected(self) -> bool:
+        """Whether the tracker's status can be heard."""
+        return any(
+            s.topic_name == self._status_topic and s.get_publisher_count() > 0
+            for s in self._subscriptions
+        )
+
+    def _subscribe(self, node: Node, topic: str, kind: str) -> Any:
+        self._bag.add_topic(topic, kind)
+        callback = self._writing(topic, kind)
+        return node.create_subscription(message_class(kind), topic, callback, QOS, raw=True)
+
+    def _writing(self, topic: str, kind: str) -> Callable[[bytes], None]:
+        def write(cdr: bytes) -> None:
+            stamp = header_stamp(cdr)
+            self._bag.write_cdr(topic, kind, cdr, stamp)
+            if topic == self._status_topic:
+                self.answered.add(stamp)
+
+        return write

@@ -1,0 +1,162 @@
+"""The whole way at once: start the installed tracker, play a bag to it, show what it answered.
+
+The tracker is a process of its own, as ``ros2 run het_ros tracker`` starts it, and gets the frames
+over DDS in real time.
+"""
+
+from __future__ import annotations
+
+import argparse
+import os
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+
+from het_ros.tools.bag_reader import BagReader
+from het_ros.tools.footage import open_footage
+from het_ros.tools.interrupt import StopRequest
+from het_ros.tools.make_bag import make_bag, parse_box
+from het_ros.tools.play import play
+from het_ros.tools.player import NobodyListensError
+from het_ros.tools.report import ResultsFolder, Summary, remove_bag
+from het_ros.tools.tracker_process import (
+    TrackerProcess,
+    TrackerProcessError,
+    find_tracker,
+    free_domain,
+)
+from het_ros.tracking.box import Box
+
+SHIPPED_BAG = Path("bags/follow_walk")
+START_UP = 30.0  # s that a tracker may take to start on a small, busy computer
+
+EXAMPLE = """examples:
+  python -m het_ros.tools.run
+  python -m het_ros.tools.run --sequence sequences/Crossing
+  python -m het_ros.tools.run --video vtest.avi --init 258,219,33,89
+  python -m het_ros.tools.run --bag bags/follow_walk -p seed:=3
+"""
+
+
+def run(
+    bag: BagReader,
+    folder: ResultsFolder,
+    executable: Path,
+    *,
+    init: Box | None = None,
+    rate: float = 1.0,
+    parameters: Sequence[str] = (),
+) -> tuple[Summary, bool]:
+    """Play a bag to a tracker that is started for it, in a ROS domain of its own.
+
+    Args:
+        bag: what to play.
+        folder: where results go, and ``tracker.log``.
+        executable: the installed tracker.
+        init: target in the first frame, px; by default the bag's own init box.
+        rate: 1 is real time.
+        parameters: of the tracker, each as "name:=value".
+
+    Returns:
+        The summary, and whether the whole bag was played (False after Ctrl-C).
+
+    Raises:
+        BagError, NobodyListensError, TrackerProcessError: what stood in the way.
+    """
+    os.environ["ROS_DOMAIN_ID"] = str(free_domain())
+    os.environ["ROS_AUTOMATIC_DISCOVERY_RANGE"] = "LOCALHOST"
+    log = folder.path / "tracker.log"
+    with TrackerProcess(executable, _arguments(bag, parameters), log) as tracker:
+        return play(bag, folder, init=init, rate=rate, wait=START_UP, alive=tracker.check)
+
+
+def _arguments(bag: BagReader, parameters: Sequence[str]) -> list[str]:
+    """Let the tracker read the bag's images, whatever their topic and kind."""
+    transport, default = ("raw", "/image")
+    if bag.compressed:
+        transport, default = ("compressed", "/image/compressed")
+    arguments = ["--ros-args", "-p", f"image_transport:={transport}"]
+    if bag.image_topic not in ("", default):
+        arguments += ["-r", f"{default}:={bag.image_topic}"]
+    for parameter in parameters:
+        arguments += ["-p", parameter]
+    return arguments
+
+
+def _shipped_bag() -> Path:
+    for parent in Path(__file__).resolve().parents:
+        if (parent / SHIPPED_BAG).is_dir():
+            return parent / SHIPPED_BAG
+    return SHIPPED_BAG
+
+
+def _bag_of_footage(source: Path, folder: ResultsFolder, options: argparse.Namespace) -> Path:
+    """Make a bag from a video or a sequence inside the results folder."""
+    path = folder.path / "input"
+    remove_bag(path)
+    with StopRequest() as stop:
+        make_bag(open_footage(source), path, init=options.init, rate=options.fps, stop=stop)
+        if stop:
+            raise KeyboardInterrupt
+    return path
+
+
+def _parse(argv: Sequence[str] | None) -> argparse.Namespace:
+    parser = argparse.ArgumentParser(
+        prog="run",
+        description=__doc__,
+        epilog=EXAMPLE,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    source = parser.add_mutually_exclusive_group()
+    source.add_argument("--bag", type=Path, help=f"a rosbag2 (default: {SHIPPED_BAG})")
+    source.add_argument("--video", type=Path, help="a video file; needs --init")
+    source.add_argument(
+        "--sequence", type=Path, help="a folder with img/ and groundtruth_rect.txt"
+    )
+    parser.add_argument("--init", type=parse_box, help="x,y,w,h of the target in the first frame")
+    parser.add_argument("--out", type=Path, default=Path("out/run"), help="results folder")
+    parser.add_argument("--fps", type=float, help="frames/s of a video or sequence")
+    parser.add_argument("--rate", type=float, default=1.0, help="2 plays twice as fast")
+    parser.add_argument("--image-topic", help="which images, if the bag has several")
+    parser.add_argument("--tracker", type=Path, help="executable (default: the installed one)")
+    parser.add_argument(
+        "-p", dest="parameters", action="append", default=[], metavar="NAME:=VALUE",
+        help="a parameter of the tracker",
+    )  # fmt: skip
+    options = parser.parse_args(argv)
+    if options.video and not options.init:
+        parser.error("--video needs --init x,y,w,h: the target in its first frame, px")
+    return options
+
+
+def main(argv: Sequence[str] | None = None) -> int:
+    """Command line."""
+    options = _parse(argv)
+    folder = ResultsFolder(options.out)
+    try:
+        executable = options.tracker or find_tracker()
+        folder.path.mkdir(parents=True, exist_ok=True)
+        footage = options.video or options.sequence
+        path = _bag_of_footage(footage, folder, options) if footage else options.bag
+        with BagReader(path or _shipped_bag(), options.image_topic) as bag:
+            summary, whole = run(
+                bag,
+                folder,
+                executable,
+                init=None if footage else options.init,
+                rate=options.rate,
+                parameters=options.parameters,
+            )
+    except (OSError, ValueError, NobodyListensError, TrackerProcessError) as error:
+        print(f"run: {error}", file=sys.stderr)
+        return 1
+    except KeyboardInterrupt:
+        return 130
+    seen = [folder.video, folder.picture, folder.csv, folder.bag, folder.path / "tracker.log"]
+    print("\n".join([*summary.lines(), "look at   " + "\n          ".join(map(str, seen))]))
+    return 0 if whole else 130
+
+
+if __name__ == "__main__":
+    sys.exit(main())
