@@ -54,7 +54,7 @@ def test_a_perfect_tracker_scores_what_arithmetic_says():
 
 def test_the_first_frame_counts_as_the_truth():
     truth = np.array([[0, 0, 10, 10.0]] * 4)
-    far = truth + (500, 500, 0, 0)
+    far = truth + np.array([500, 500, 0, 0])
     result = score(far, truth)
     assert result.mean_overlap == pytest.approx(1 / 4)
     assert result.auc == pytest.approx(20 / 21 / 4)
@@ -80,21 +80,8 @@ def test_a_run_of_another_length_cannot_be_scored():
 
 
 STRUCK = [
-    "Bolt2",
-    "Car1",
-    "Couple",
-    "Crossing",
-    "David",
-    "Dog1",
-    "DragonBaby",
-    "FaceOcc1",
-    "Freeman1",
-    "Human7",
-    "Jogging-1",
-    "Jogging-2",
-    "MotorRolling",
-    "Skiing",
-    "Woman",
+    *("Bolt2", "Car1", "Couple", "Crossing", "David", "Dog1", "DragonBaby", "FaceOcc1"),
+    *("Freeman1", "Human7", "Jogging-1", "Jogging-2", "MotorRolling", "Skiing", "Woman"),
 ]
 
 
