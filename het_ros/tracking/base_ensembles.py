@@ -7,13 +7,13 @@ them are evaluated on the same feature maps at once.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Protocol
+from typing import Any, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
 Floats = NDArray[np.float64]
-Features = NDArray[np.float32]
+Features = NDArray[np.floating[Any]]
 
 
 class BaseEnsembles(Protocol):
@@ -136,7 +136,7 @@ class NaiveBayes:
         self._least_variance = sigma_floor**2
         self._positive: Gaussians | None = None
         self._negative: Gaussians | None = None
-        self._squares = np.empty((0, 0), np.float32)
+        self._squares = np.empty((0, 0))
 
     def score_maps(self, features: Features) -> Features:
         """F(l) = sum of f(l_i) (eq. strongClassifier) of every sub-patch at every place.
@@ -148,13 +148,13 @@ class NaiveBayes:
             features: (m, rows, columns), standardised.
 
         Returns:
-            (Q, rows, columns) float32.
+            (Q, rows, columns), of the features' dtype.
         """
         quadratic, linear, constant = self.coefficients()
         flat = features.reshape(len(features), -1)
-        scores = quadratic.astype(np.float32) @ self._squared(flat)
-        scores += linear.astype(np.float32) @ flat
-        scores += constant[:, None].astype(np.float32)
+        scores = quadratic.astype(flat.dtype) @ self._squared(flat)
+        scores += linear.astype(flat.dtype) @ flat
+        scores += constant[:, None].astype(flat.dtype)
         return scores.reshape(-1, *features.shape[1:])
 
     def coefficients(self) -> tuple[Floats, Floats, Floats]:
@@ -201,26 +201,45 @@ class NaiveBayes:
         return float(1 / (1 + np.exp(-np.clip(mean, -50, 50))))
 
     def _class_gaussians(self, features: Features, corners: Floats) -> tuple[Gaussians, Gaussians]:
-        """Mean and variance of this frame's positive and negative samples."""
-        distances = squared_distances(corners, features.shape[1:])
-        nearest = distances.min(axis=(1, 2), keepdims=True) + 1e-9
-        farthest = distances.max(axis=(1, 2), keepdims=True)
-        positive = distances < np.maximum(self._positive_radius**2, nearest)
-        negative = distances >= np.minimum(self._negative_radius**2, farthest)
-        samples = np.concatenate([positive, negative]).reshape(2 * len(corners), -1)
-        share = (samples / samples.sum(axis=1, keepdims=True)).astype(np.float32)
-        # Two products give E[l] and E[l^2] of both classes of all sub-patches.
-        flat = features.reshape(len(features), -1)
-        mean = (share @ flat.T).astype(np.float64)
-        variance = np.maximum((share @ self._squared(flat).T).astype(np.float64) - mean**2, 0)
-        count = len(corners)
-        return (
-            Gaussians(mean[:count], variance[:count]),
-            Gaussians(mean[count:], variance[count:]),
+        """This frame's positive and negative samples of each sub-patch, as Gaussians.
+
+        Positives are all places within their radius, or the nearest one. Negatives are every
+        second place in x and in y from their radius on, or the farthest one.
+        """
+        rows, columns = features.shape[1:]
+        low = np.floor(corners.min(axis=0) - self._positive_radius)
+        high = np.ceil(corners.max(axis=0) + self._positive_radius)
+        (x0, y0), (x1, y1) = (
+            np.clip(v, 0, [columns - 1, rows - 1]).astype(int) for v in (low, high)
         )
+        near = features[:, y0 : y1 + 1, x0 : x1 + 1]
+        distances = squared_distances(corners - [x0, y0], near.shape[1:])
+        nearest = distances.min(axis=(1, 2), keepdims=True)
+        positive = distances < np.maximum(self._positive_radius**2, nearest + 1e-9)
+
+        coarse = features[:, ::2, ::2]
+        distances = 4 * squared_distances(corners / 2, coarse.shape[1:])
+        farthest = distances.max(axis=(1, 2), keepdims=True)
+        negative = distances >= np.minimum(self._negative_radius**2, farthest)
+        return sample_gaussians(near, positive), sample_gaussians(coarse, negative)
 
     def _squared(self, flat: Features) -> Features:
         """The features (m, places) squared, in a buffer used again."""
-        if self._squares.shape != flat.shape:
+        if self._squares.shape != flat.shape or self._squares.dtype != flat.dtype:
             self._squares = np.empty_like(flat)
         return np.multiply(flat, flat, out=self._squares)
+
+
+def sample_gaussians(features: Features, samples: NDArray[np.bool_]) -> Gaussians:
+    """Mean and variance of each sub-patch's samples, by two matrix products.
+
+    Args:
+        features: (m, rows, columns), standardised.
+        samples: (Q, rows, columns), which places are samples of which sub-patch; one at least.
+    """
+    flat = features.reshape(len(features), -1)
+    chosen = samples.reshape(len(samples), -1)
+    share = (chosen / chosen.sum(axis=1, keepdims=True)).astype(flat.dtype)
+    mean = (share @ flat.T).astype(np.float64)
+    square = (share @ (flat * flat).T).astype(np.float64)
+    return Gaussians(mean, np.maximum(square - mean**2, 0))

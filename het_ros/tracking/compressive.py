@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 Integrals = Sequence[NDArray[Any]]
-Features = NDArray[np.float32]
+Features = NDArray[np.floating[Any]]
 
 
 class Rectangle(NamedTuple):
@@ -80,90 +80,95 @@ def integral_images(channels: Sequence[NDArray[Any]]) -> list[NDArray[Any]]:
 
 
 def raw_feature_maps(
-    integrals: Integrals, matrix: MeasurementMatrix, out: NDArray[Any], step: int = 1
-) -> None:
+    integrals: Integrals, matrix: MeasurementMatrix, buffer: NDArray[Any] | None = None
+) -> NDArray[Any]:
     """L = R H (eq. 1) for the sub-patches at all places of a window.
 
     Args:
-        integrals: C integral images (H + 1, W + 1) of one dtype.
+        integrals: C integral images (H + 1, W + 1) of one dtype, contiguous.
         matrix: R, with sub-patches of (w, h).
-        out: (m, rows, columns) of the integrals' dtype, rows = (H - h) // step + 1 and columns =
-            (W - w) // step + 1; filled with the features of the sub-patches with their corners
-            at (x, y) = (step column, step row).
-        step: distance of two places, px.
+        buffer: an array of this function that may be overwritten.
+
+    Returns:
+        (m, H - h + 1, W - w + 1) of the integrals' dtype: the features of the sub-patches with
+        their corners at column x and row y; a view of an array that can be the next ``buffer``.
     """
-    _, rows, columns = out.shape
-    span_y, span_x = step * (rows - 1) + 1, step * (columns - 1) + 1
-    band = np.empty((rows, integrals[0].shape[1]), out.dtype)
-    for feature, rectangles in zip(out, matrix.rows, strict=True):
+    width, height = matrix.size
+    stride = integrals[0].shape[1]
+    rows = integrals[0].shape[0] - height
+    shape = (len(matrix.rows), rows, stride)
+    if buffer is None or buffer.shape != shape or buffer.dtype != integrals[0].dtype:
+        buffer = np.empty(shape, integrals[0].dtype)
+    # Maps and integral images are read as flat arrays with the same stride: slices of those are
+    # contiguous and several times faster than slices of rows and columns. What comes of places
+    # from column W - w + 1 on runs over the border and is cut off at the end.
+    places = rows * stride - width
+    flat = [integral.reshape(-1) for integral in integrals]
+    band = np.empty(places + width, buffer.dtype)
+    for feature, rectangles in zip(buffer.reshape(len(buffer), -1), matrix.rows, strict=True):
+        total = feature[:places]
         started = False
         for channel, x0, y0, x1, y1, sign in rectangles:
-            # The sum over a band of rows first, then between two columns of it.
-            integral = integrals[channel]
-            width = x1 - x0 + span_x
-            upper = integral[y0 : y0 + span_y : step, x0 : x0 + width]
-            lower = integral[y1 : y1 + span_y : step, x0 : x0 + width]
-            sums = np.subtract(lower, upper, out=band[:, :width])
-            left, right = sums[:, :span_x:step], sums[:, x1 - x0 :: step]
-            if not started:
-                plus, minus = (right, left) if sign > 0 else (left, right)
-                np.subtract(plus, minus, out=feature)
-                started = True
-            elif sign > 0:
-                feature += right
-                feature -= left
+            # First the sums over all rows of the rectangle, then between two columns of them.
+            integral, span = flat[channel], places + x1 - x0
+            upper, lower = y0 * stride + x0, y1 * stride + x0
+            np.subtract(
+                integral[lower : lower + span], integral[upper : upper + span], out=band[:span]
+            )
+            left, right = band[:places], band[x1 - x0 : span]
+            plus, minus = (right, left) if sign > 0 else (left, right)
+            if started:
+                np.add(total, plus, out=total)
+                np.subtract(total, minus, out=total)
             else:
-                feature -= right
-                feature += left
+                np.subtract(plus, minus, out=total)
+                started = True
+    return buffer[:, :, : stride - width]
 
 
 class CompressiveFeatures:
     """Feature maps, centred and scaled by what the first frame's features were like.
 
-    Without that the squares of sums over thousands of pixels would cancel in float32.
+    Without that the squares of sums over thousands of pixels would cancel each other's digits.
     The maps live in buffers that are used again: they hold until the next call.
+
+    Args:
+        matrix: R.
+        dtype: of the maps. In float32 scores are good to some 1e-5 of the largest.
     """
 
-    def __init__(self, matrix: MeasurementMatrix) -> None:
+    def __init__(self, matrix: MeasurementMatrix, dtype: type[np.floating[Any]] = np.float64):
         self.matrix = matrix
+        self._dtype = dtype
         self._centre: NDArray[Any] | None = None
-        self._scale = np.ones(len(matrix.rows), np.float32)
-        self._raw = np.empty((0, 0, 0))
-        self._maps = np.empty((0, 0, 0), np.float32)
+        self._scale = np.ones((len(matrix.rows), 1, 1), dtype)
+        self._buffer: NDArray[Any] | None = None
+        self._maps: Features = np.empty((0, 0, 0), dtype)
 
-    def maps(self, integrals: Integrals, step: int = 1) -> Features:
-        """(m, rows, columns) float32, the standardised features at every ``step`` px.
+    def maps(self, integrals: Integrals) -> Features:
+        """(m, rows, columns) of the standardised features at every place of a window.
 
         The first call fixes, for each feature, the mean and the deviation that this and all
         further maps are centred and scaled with.
+
+        Args:
+            integrals: C integral images (H + 1, W + 1) of one dtype, contiguous.
         """
-        width, height = self.matrix.size
-        rows = (integrals[0].shape[0] - 1 - height) // step + 1
-        columns = (integrals[0].shape[1] - 1 - width) // step + 1
-        shape = (len(self.matrix.rows), rows, columns)
-        if self._maps.shape != shape or self._raw.dtype != integrals[0].dtype:
-            self._raw = np.empty(shape, integrals[0].dtype)
-            self._maps = np.empty(shape, np.float32)
-        raw_feature_maps(integrals, self.matrix, self._raw, step)
+        raw = raw_feature_maps(integrals, self.matrix, self._buffer)
+        self._buffer = raw.base
         if self._centre is None:
-            self._centre = self._fit(self._raw)
-        # Centred before the conversion, where whole numbers are still exact.
-        self._raw -= self._centre
-        np.multiply(
-            self._raw,
-            self._scale[:, None, None],
-            out=self._maps,
-            casting="unsafe",
-            dtype=np.float32,
-        )
+            self._centre = self._fit(raw)
+        if self._maps.shape != raw.shape:
+            self._maps = np.empty(raw.shape, self._dtype)
+        # Centred first, where whole numbers are still exact.
+        np.subtract(raw, self._centre, out=self._maps, casting="unsafe")
+        self._maps *= self._scale
         return self._maps
 
     def _fit(self, raw: NDArray[Any]) -> NDArray[Any]:
         """Take the scale from raw maps (m, rows, columns) and return the centre (m, 1, 1)."""
-        flat = raw.reshape(len(raw), -1)
-        deviation = flat.std(axis=1)
+        deviation = raw.std(axis=(1, 2), keepdims=True)
         # A feature that is flat in the first frame is left in grey values per pixel.
         area = self.matrix.size[0] * self.matrix.size[1]
-        self._scale = (1 / np.where(deviation > 0, deviation, area)).astype(np.float32)
-        centre = np.rint(flat.mean(axis=1)).astype(raw.dtype)
-        return np.asarray(centre[:, None, None])
+        self._scale = (1 / np.where(deviation > 0, deviation, area)).astype(self._dtype)
+        return np.asarray(np.rint(raw.mean(axis=(1, 2), keepdims=True)).astype(raw.dtype))

@@ -19,6 +19,7 @@ from het_ros.tracking.box import Box
 from het_ros.tracking.channels import channel_stack, names_for
 from het_ros.tracking.compressive import (
     CompressiveFeatures,
+    Features,
     draw_measurement_matrix,
     integral_images,
 )
@@ -200,7 +201,7 @@ class _Target:
             scale,
         )
 
-    def _feature_maps(self, window: Window) -> NDArray[np.float32]:
+    def _feature_maps(self, window: Window) -> Features:
         channels = channel_stack(window.pixels, self._channels)
         return self._features.maps(integral_images(channels))
 
