@@ -10,6 +10,10 @@ ROOT = Path(__file__).parent
 # Each executable and the module whose main() it runs.
 COMMANDS = {
     "tracker": "het_ros.ros.tracker_node",
+    "make_bag": "het_ros.tools.make_bag",
+    "play": "het_ros.tools.play",
+    "replay": "het_ros.tools.replay",
+    "evaluate": "het_ros.evaluation.cli",
 }
 
 # Real robots take these from apt (package.xml); `make run` takes them from PyPI.
@@ -57,7 +61,7 @@ setup(
     name=NAME,
     version="0.1.0",
     packages=find_packages(include=[NAME, f"{NAME}.*"]),
-    package_data={NAME: ["py.typed", "**/*.j2"]},
+    package_data={NAME: ["py.typed", "evaluation/templates/*"]},
     data_files=[
         ("share/ament_index/resource_index/packages", [f"resource/{NAME}"]),
         (f"share/{NAME}", ["package.xml"]),

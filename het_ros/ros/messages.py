@@ -7,7 +7,6 @@ topics' documentation names the units, and every output carries the header of it
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
 
 from geometry_msgs.msg import (
     Point32,
@@ -62,13 +61,9 @@ def _checked(x: float, y: float, w: float, h: float) -> Box:
 def polygon_from_box(box: Box, header: Header) -> PolygonStamped:
     """The four corners, clockwise from the top left, px."""
     message = PolygonStamped(header=header)
-    left, top, right, bottom = box.x, box.y, box.x + box.w, box.y + box.h
-    corners: Iterable[tuple[float, float]] = (
-        (left, top),
-        (right, top),
-        (right, bottom),
-        (left, bottom),
-    )
+    # float(): a message stores any other kind of number as 0 without a word.
+    left, top, right, bottom = map(float, (box.x, box.y, box.x + box.w, box.y + box.h))
+    corners = ((left, top), (right, top), (right, bottom), (left, bottom))
     message.polygon.points = [Point32(x=x, y=y, z=0.0) for x, y in corners]
     return message
 
@@ -92,7 +87,8 @@ def roi_from_box(box: Box, width: int, height: int) -> RegionOfInterest:
 def pose_from_estimate(estimate: Estimate, header: Header) -> PoseWithCovarianceStamped:
     """The box's centre (px) with its covariance (px^2) in rows and columns x, y."""
     message = PoseWithCovarianceStamped(header=header)
-    message.pose.pose.position.x, message.pose.pose.position.y = estimate.box.centre
+    position = message.pose.pose.position
+    position.x, position.y = map(float, estimate.box.centre)
     message.pose.covariance = _planar(estimate.covariance[:2, :2])
     return message
 

@@ -138,7 +138,8 @@ class TrackerNode(LifecycleNode):
     # Lifecycle ------------------------------------------------------------------------------
 
     def on_configure(self, state: LifecycleState) -> TransitionCallbackReturn:
-        """Make the outputs and the services."""
+        """Make the outputs and the services, on a stream that nothing is known of."""
+        self._gate = StampGate(self._settings.jump_back)
         for topic, kind in OUTPUTS.items():
             self._outputs[topic] = self.create_publisher(
                 kind,
@@ -216,7 +217,9 @@ class TrackerNode(LifecycleNode):
         try:
             pixels = array_of(message, self._settings.white_level)
         except ImageError as error:
-            self._hints.once(f"image {message.header.frame_id}", f"image refused: {error}")
+            self._hints.once(
+                f"image {getattr(message, 'encoding', 'compressed')}", f"image refused: {error}"
+            )
             return
         self._newest = frame
         self._publish(frame, self._started(frame, pixels) or self._followed(frame, pixels))

@@ -1,0 +1,145 @@
+"""What tests of several packages share: real footage, made footage, a graph of nodes, a process.
+
+ROS is imported where it is used only, so that the core's tests run without it.
+"""
+
+from __future__ import annotations
+
+import itertools
+import os
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import cv2
+import numpy as np
+import pytest
+
+ROOT = Path(__file__).parents[1]
+EXECUTABLES = ROOT / "install" / "het_ros" / "lib" / "het_ros"
+# Fast DDS reads it once a process: it must be set before the first node.
+os.environ.setdefault("FASTRTPS_DEFAULT_PROFILES_FILE", str(ROOT / "config" / "fastdds_shm.xml"))
+PATIENCE = 60  # s: how long something that must happen may take on a busy machine
+
+
+@pytest.fixture(scope="session")
+def sequences() -> Path:
+    """The folder of real sequences, $HET_SEQUENCES; tests that need it are skipped without."""
+    folder = Path(os.environ.get("HET_SEQUENCES", ROOT.parent / "shared" / "sequences"))
+    if not any(folder.glob("*/groundtruth_rect*.txt")):
+        pytest.skip(f"no real sequences in {folder}: set HET_SEQUENCES to their folder")
+    return folder
+
+
+@pytest.fixture(scope="session")
+def made_footage() -> tuple[list[np.ndarray], tuple[float, float, float, float]]:
+    """40 BGR frames of 160 x 120 px, a textured target that moves 2 px a frame; its first box."""
+    rng = np.random.default_rng(5)
+    ground = cv2.GaussianBlur(rng.integers(0, 160, (120, 160, 3), np.uint8), (0, 0), 3)
+    target = cv2.resize(rng.integers(0, 255, (8, 5, 3), np.uint8), (20, 32))
+    frames = []
+    for i in range(40):
+        frame = ground.copy()
+        x, y = 20 + 2 * i, 40 + i // 2
+        frame[y : y + 32, x : x + 20] = target
+        frames.append(frame)
+    return frames, (20, 40, 20, 32)
+
+
+class Graph:
+    """Nodes of one context, spun in this thread; invisible to the rest of the machine."""
+
+    def __init__(self) -> None:
+        import rclpy
+        from rclpy.executors import SingleThreadedExecutor
+
+        self.context = rclpy.Context()
+        rclpy.init(context=self.context)
+        self.executor = SingleThreadedExecutor(context=self.context)
+        self.nodes: list = []
+
+    def add(self, node):
+        """Take a node made with ``context=graph.context``; it is destroyed with the graph."""
+        self.executor.add_node(node)
+        self.nodes.append(node)
+        return node
+
+    def spin_until(self, happened, what: str = "what the test waits for") -> None:
+        """Spin until ``happened()`` is true; fail when it does not happen at all."""
+        end = time.monotonic() + PATIENCE
+        while not happened():
+            assert time.monotonic() < end, f"did not happen: {what}"
+            self.executor.spin_once(timeout_sec=0.02)
+
+    def settle(self, rounds: int = 5) -> None:
+        """Let everything that is on its way arrive."""
+        for _ in range(rounds):
+            self.executor.spin_once(timeout_sec=0.02)
+
+    def close(self) -> None:
+        self.executor.shutdown()
+        for node in self.nodes:
+            node.destroy_node()
+        self.context.try_shutdown()
+
+
+@pytest.fixture
+def graph(monkeypatch, tmp_path):
+    """A :class:`Graph` of its own."""
+    monkeypatch.setenv("ROS_AUTOMATIC_DISCOVERY_RANGE", "OFF")
+    monkeypatch.setenv("ROS_LOG_DIR", str(tmp_path / "log"))
+    made = Graph()
+    yield made
+    made.close()
+
+
+@pytest.fixture
+def local_graph(processes):
+    """A :class:`Graph` that sees what ``processes`` started."""
+    made = Graph()
+    yield made
+    made.close()
+
+
+_domains = itertools.count(20 + os.getpid() % 150)
+
+
+@pytest.fixture
+def processes(monkeypatch, tmp_path):
+    """Start installed executables: ``processes("tracker", "--ros-args", ...)`` gives the Popen.
+
+    They and the test's own process share a ROS domain that nobody else uses. What still runs at
+    the end is told to stop (SIGTERM), and killed if it does not. Output goes to a file,
+    ``process.log``.
+    """
+    if not (EXECUTABLES / "tracker").exists():
+        pytest.skip("nothing installed: run `make build`, and source install/setup.bash")
+    monkeypatch.setenv("ROS_AUTOMATIC_DISCOVERY_RANGE", "LOCALHOST")
+    monkeypatch.setenv("ROS_DOMAIN_ID", str(next(_domains)))
+    monkeypatch.setenv("ROS_LOG_DIR", str(tmp_path / "log"))
+    started: list[subprocess.Popen] = []
+
+    def start(executable: str, *arguments: str) -> subprocess.Popen:
+        log = tmp_path / f"{executable}-{len(started)}.txt"
+        with log.open("w") as output:
+            process = subprocess.Popen(
+                [str(EXECUTABLES / executable), *arguments],
+                stdin=subprocess.DEVNULL,
+                stdout=output,
+                stderr=subprocess.STDOUT,
+            )
+        process.log = log
+        started.append(process)
+        return process
+
+    yield start
+    for process in started:
+        if process.poll() is None:
+            process.terminate()
+    for process in started:
+        try:
+            process.wait(PATIENCE)
+        except subprocess.TimeoutExpired:
+            process.kill()
+            print(f"had to be killed: {process.args}", file=sys.stderr)

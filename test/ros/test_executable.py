@@ -1,0 +1,66 @@
+"""The installed executable in a process of its own, over DDS, as ``ros2 run`` starts it."""
+
+import signal
+
+import pytest
+
+from het_ros import Box
+from het_ros.ros.messages import box_from_polygon
+from het_ros.ros.status import status_values
+
+from .streams import FRAME_TIME, Camera, box_message, header_at, image_message
+
+
+def test_follows_what_another_process_sends(processes, local_graph, made_footage):
+    frames, box = made_footage
+    tracker = processes("tracker", "--ros-args", "-r", "image:=/camera/image_raw")
+    camera = local_graph.add(
+        Camera(
+            context=local_graph.context, cli_args=["--ros-args", "-r", "image:=/camera/image_raw"]
+        )
+    )
+    local_graph.spin_until(camera.connected, "discovery")
+    header = header_at(1.0)
+    camera.boxes.publish(box_message(box, header))
+    for i, frame in enumerate(frames[:20]):
+        camera.images.publish(image_message(frame, header_at(1 + i * FRAME_TIME)))
+        local_graph.spin_until(lambda: len(camera.got["status"]) > i, "a status a frame")  # noqa: B023
+    local_graph.spin_until(lambda: len(camera.got["box"]) == 20, "a box a frame")
+
+    assert {status_values(s)["state"] for s in camera.got["status"]} == {"TRACKING"}
+    assert box_from_polygon(camera.got["box"][-1]).iou(Box(58, 49, 20, 32)) > 0.6
+    assert camera.got["box"][-1].header == header_at(1 + 19 * FRAME_TIME)
+    assert tracker.poll() is None
+
+
+@pytest.mark.parametrize("stop", [signal.SIGINT, signal.SIGTERM])
+def test_a_signal_ends_it_cleanly(processes, local_graph, stop):
+    tracker = processes("tracker")
+    camera = local_graph.add(Camera(context=local_graph.context))
+    local_graph.spin_until(camera.connected, "discovery")
+    tracker.send_signal(stop)
+    assert tracker.wait() == 0
+    assert "Traceback" not in tracker.log.read_text()
+
+
+@pytest.mark.parametrize(
+    "arguments, says",
+    [
+        (("--ros-args", "-p", "max_gap:=-1.0"), "max_gap"),
+        (("--ros-args", "-p", "seed:=much"), "seed"),
+        (("--ros-args", "-p", "image_transport:=smoke"), "raw, compressed"),
+        (("--fast",), "--fast"),
+    ],
+)
+def test_wrong_arguments_end_it_with_a_reason(processes, arguments, says):
+    tracker = processes("tracker", *arguments)
+    assert tracker.wait() == 2
+    log = tracker.log.read_text()
+    assert says in log
+    assert "Traceback" not in log
+
+
+def test_help_has_an_example(processes):
+    tracker = processes("tracker", "--help")
+    assert tracker.wait() == 0
+    assert "example: ros2 run het_ros tracker" in tracker.log.read_text()

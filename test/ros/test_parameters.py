@@ -1,0 +1,81 @@
+import pytest
+from rcl_interfaces.msg import ParameterType
+from rclpy.exceptions import (
+    InvalidParameterTypeException,
+    InvalidParameterValueException,
+)
+from rclpy.node import Node
+from rclpy.parameter import Parameter as RosParameter
+
+from het_ros import TrackerConfig
+from het_ros.ros.parameters import NodeConfig, declare, read
+from het_ros.tracking.parameter import parameters_of
+
+TABLES = (TrackerConfig, NodeConfig)
+DECLARED = [(table, declared) for table in TABLES for declared in parameters_of(table)]
+ROS_TYPES = {
+    bool: ParameterType.PARAMETER_BOOL,
+    int: ParameterType.PARAMETER_INTEGER,
+    float: ParameterType.PARAMETER_DOUBLE,
+    str: ParameterType.PARAMETER_STRING,
+    tuple: ParameterType.PARAMETER_STRING_ARRAY,
+}
+
+
+def node_with(graph, **overrides) -> Node:
+    node = Node(
+        "declared",
+        context=graph.context,
+        parameter_overrides=[RosParameter(name, value=v) for name, v in overrides.items()],
+    )
+    graph.add(node)
+    declare(node, TrackerConfig())
+    declare(node, NodeConfig())
+    return node
+
+
+def test_no_name_stands_in_both_tables():
+    names = [declared.name for _, declared in DECLARED]
+    assert len(names) == len(set(names))
+
+
+def test_every_parameter_is_declared_as_the_table_says(graph):
+    node = node_with(graph)
+    for table, declared in DECLARED:
+        descriptor = node.describe_parameter(declared.name)
+        assert descriptor.type == ROS_TYPES[type(declared.default)], declared.name
+        assert descriptor.description.startswith(declared.doc)
+        assert declared.unit in descriptor.description
+        assert descriptor.read_only == declared.read_only
+        ranges = [*descriptor.integer_range, *descriptor.floating_point_range]
+        assert bool(ranges) == (declared.low is not None or declared.high is not None)
+        for limits in ranges:
+            assert declared.low is None or limits.from_value == declared.low
+            assert declared.high is None or limits.to_value == declared.high
+        assert read(node, table) == table()
+
+
+def test_overrides_are_read(graph):
+    node = node_with(graph, seed=42, max_gap=3.5, image_transport="compressed")
+    assert read(node, TrackerConfig).seed == 42
+    assert read(node, NodeConfig).max_gap == 3.5
+    assert read(node, NodeConfig).image_transport == "compressed"
+
+
+@pytest.mark.parametrize(
+    "overrides, error",
+    [
+        ({"max_gap": -1.0}, InvalidParameterValueException),
+        ({"seed": -1}, InvalidParameterValueException),
+        ({"seed": "seven"}, InvalidParameterTypeException),
+        ({"max_gap": 5}, InvalidParameterTypeException),
+    ],
+)
+def test_overrides_outside_type_or_range_are_refused(graph, overrides, error):
+    with pytest.raises(error, match=next(iter(overrides))):
+        node_with(graph, **overrides)
+
+
+def test_a_choice_that_there_is_not_is_refused_when_read(graph):
+    with pytest.raises(ValueError, match="raw, compressed"):
+        read(node_with(graph, image_transport="smoke"), NodeConfig)
