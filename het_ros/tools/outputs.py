@@ -5,6 +5,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import Path
 
+import numpy as np
+from numpy.typing import NDArray
+
 from het_ros.ros.status import status_values
 from het_ros.tools.bag_messages import POLYGON, box_of, stamp_of
 from het_ros.tools.bag_reader import BagReader
@@ -58,6 +61,13 @@ def read_answers(
         _row(stamp, statuses.get(stamp), boxes.get(stamp), velocities.get(stamp))
         for stamp in stamps
     ]
+
+
+def read_latencies(bag: Path | str, tracker: str = DEFAULT_TRACKER) -> NDArray[np.float64]:
+    """Time from a frame's arrival to its answer, ms, of each status in a recording."""
+    with BagReader(bag) as reader:
+        statuses = reader.messages(f"{tracker}/status")
+        return np.array([float(status_values(m)["latency_ms"]) for _, m in statuses])
 
 
 def _row(

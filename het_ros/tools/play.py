@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-import os
 import sys
 import time
 from collections.abc import Callable, Sequence
@@ -21,7 +20,7 @@ from het_ros.tools.make_bag import parse_box
 from het_ros.tools.outputs import DEFAULT_TRACKER
 from het_ros.tools.player import LONGEST_SPIN, NobodyListensError, Player, Spin
 from het_ros.tools.recorder import Recorder
-from het_ros.tools.report import ResultsFolder, Summary, write_report
+from het_ros.tools.report import ResultsFolder, write_report
 from het_ros.tools.transport import use_profile
 from het_ros.tracking.box import Box
 
@@ -39,7 +38,8 @@ Topics are remapped like any node's: add --ros-args -r /image:=/camera/image_raw
 
 def play(
     bag: BagReader,
-    folder: ResultsFolder,
+    recording: Path,
+    stop: StopRequest,
     *,
     tracker: str = DEFAULT_TRACKER,
     rate: float = 1.0,
@@ -47,12 +47,13 @@ def play(
     wait: float = WAIT,
     ros_arguments: Sequence[str] = (),
     alive: Callable[[], None] = lambda: None,
-) -> tuple[Summary, bool]:
-    """Play a bag to a tracker that runs elsewhere and write the results.
+) -> list[int]:
+    """Play a bag to a tracker that runs elsewhere and record its answers.
 
     Args:
         bag: what to play.
-        folder: where results go.
+        recording: bag to write.
+        stop: ends the play; what came until then is recorded.
         tracker: full name of the tracker's node.
         rate: 1 is real time, 2 twice as fast.
         init: target in the first frame, px; by default the bag's own init box.
@@ -61,16 +62,16 @@ def play(
         alive: called often; may raise when playing on makes no sense.
 
     Returns:
-        The summary, and whether the whole bag was played (False after Ctrl-C).
+        Header stamps of the frames that were sent, ns.
 
     Raises:
         BagError: the bag cannot be played.
         NobodyListensError: no tracker was there.
+        ValueError: the rate is not positive.
     """
     if not 0 < rate < float("inf"):
         raise ValueError(f"a rate of {rate:g} makes no sense: 1 is real time, 2 twice as fast")
     use_profile()
-    folder.clear()
     rclpy.init(args=list(ros_arguments), signal_handler_options=SignalHandlerOptions.NO)
     try:
         node = rclpy.create_node("het_ros_play")
@@ -81,15 +82,14 @@ def play(
             alive()
             executor.spin_once(timeout_sec=seconds)
 
-        with StopRequest() as stop, BagWriter(folder.bag) as recording:
+        with BagWriter(recording) as bag_of_answers:
             player = Player(node, bag, init)
-            recorder = Recorder(node, recording, tracker)
+            recorder = Recorder(node, bag_of_answers, tracker)
             player.wait_for_subscriber(spin, wait, stop)
             _wait_for_tracker(recorder, tracker, spin, wait, stop)
-            stamps = _play_and_record(player, recorder, spin, rate, stop)
+            return _play_and_record(player, recorder, spin, rate, stop)
     finally:
         rclpy.try_shutdown()
-    return write_report(bag, stamps, folder, tracker), not stop
 
 
 def _wait_for_tracker(
@@ -152,21 +152,24 @@ def main(argv: Sequence[str] | None = None) -> int:
     options = parser.parse_args(arguments[:cut])
     folder = ResultsFolder(options.out)
     try:
-        with BagReader(options.bag, options.image_topic) as bag:
-            summary, whole = play(
+        with BagReader(options.bag, options.image_topic) as bag, StopRequest() as stop:
+            folder.clear()
+            stamps = play(
                 bag,
-                folder,
+                folder.bag,
+                stop,
                 tracker=options.tracker,
                 rate=options.rate,
                 init=options.init,
                 wait=options.wait,
                 ros_arguments=arguments[cut:],
             )
+            summary = write_report(bag, stamps, folder, options.tracker)
     except (OSError, ValueError, NobodyListensError) as error:
         print(f"play: {error}", file=sys.stderr)
         return 1
     print("\n".join([*summary.lines(), f"results   {folder.path}"]))
-    return 0 if whole else 130
+    return 130 if stop else 0
 
 
 if __name__ == "__main__":

@@ -58,10 +58,13 @@ def plot_track(
     start = rows[0].stamp if rows else 0
     _show_strip(above.subplots(strip_rows, columns, squeeze=False).ravel(), rows, strip, start)
     time = np.array([(row.stamp - start) * 1e-9 for row in rows])
+    # Lines run on through frames without an answer; the background says where those are.
+    answered = [index for index, row in enumerate(rows) if row.state is not None]
+    told, true = [rows[index] for index in answered], [truth[index] for index in answered]
     axes = below.subplots(len(panels), 1, sharex=True, squeeze=False).ravel()
     for axis, panel in zip(axes, panels, strict=True):
         _shade_states(axis, time, rows)
-        panel(axis, time, rows, truth)
+        panel(axis, time[answered], told, true)
         axis.grid(alpha=0.3)
         axis.margins(x=0.01)
     axes[-1].set_xlabel("time / s")

@@ -15,7 +15,7 @@ from het_ros.evaluation.metrics import Score, score
 from het_ros.tools.bag_reader import BagReader
 from het_ros.tools.drawing import annotate
 from het_ros.tools.interrupt import StopRequest
-from het_ros.tools.outputs import DEFAULT_TRACKER, read_answers
+from het_ros.tools.outputs import DEFAULT_TRACKER, read_answers, read_latencies
 from het_ros.tools.plot import plot_track
 from het_ros.tools.results import Row, write_csv
 from het_ros.tools.video import VideoWriter
@@ -84,12 +84,14 @@ class Summary:
         sent: frames that the tracker was given.
         answered: frames for which it gave a status.
         seconds: time spent in each state, s.
+        latencies: from the arrival of a frame to its answer, ms.
         score: against the ground truth; None without any.
     """
 
     sent: int
     answered: int
     seconds: dict[str, float]
+    latencies: NDArray[np.float64]
     score: Score | None
 
     @property
@@ -104,6 +106,9 @@ class Summary:
             f"frames    {self.sent} sent, {self.answered} answered ({self.answered_share:.1%})",
             f"states    {spent or 'none'}",
         ]
+        if len(self.latencies):
+            median, most = np.percentile(self.latencies, (50, 95))
+            lines.append(f"latency   {median:.1f} ms (median), {most:.1f} ms (95 %)")
         if self.score:
             lines.append(
                 f"accuracy  mean IoU {self.score.mean_overlap:.3f}, centre within 20 px in "
@@ -134,7 +139,7 @@ def write_report(
     truth = [truth_by_stamp.get(row.stamp) for row in rows]
     with StopRequest() as stop:
         strip = _write_video(source, rows, truth, folder.video, stop)
-    summary = _summarise(rows, truth)
+    summary = _summarise(rows, truth, read_latencies(folder.bag, tracker))
     title = f"{source.path.name}: {summary.sent} frames, {summary.answered_share:.0%} answered"
     if summary.score:
         title += f", mean IoU {summary.score.mean_overlap:.2f}"
@@ -180,13 +185,16 @@ def _usual_rate(rows: Sequence[Row]) -> float:
     return min(1 / usual, 1000.0) if usual > 0 else 30.0
 
 
-def _summarise(rows: Sequence[Row], truth: Sequence[Box | None]) -> Summary:
+def _summarise(
+    rows: Sequence[Row], truth: Sequence[Box | None], latencies: NDArray[np.float64]
+) -> Summary:
     step = 1 / _usual_rate(rows)
     counts = {state: sum(row.state is state for row in rows) for state in State}
     return Summary(
         sent=len(rows),
         answered=sum(row.state is not None for row in rows),
         seconds={state.value: n * step for state, n in counts.items() if n},
+        latencies=latencies,
         score=_score(rows, truth),
     )
 

@@ -18,7 +18,7 @@ from het_ros.tools.interrupt import StopRequest
 from het_ros.tools.make_bag import make_bag, parse_box
 from het_ros.tools.play import play
 from het_ros.tools.player import NobodyListensError
-from het_ros.tools.report import ResultsFolder, Summary, remove_bag
+from het_ros.tools.report import ResultsFolder, Summary, remove_bag, write_report
 from het_ros.tools.tracker_process import (
     TrackerProcess,
     TrackerProcessError,
@@ -47,7 +47,7 @@ def run(
     rate: float = 1.0,
     parameters: Sequence[str] = (),
 ) -> tuple[Summary, bool]:
-    """Play a bag to a tracker that is started for it, in a ROS domain of its own.
+    """Play a bag to a tracker that is started for it, in a ROS domain of its own, and report.
 
     Args:
         bag: what to play.
@@ -66,8 +66,13 @@ def run(
     os.environ["ROS_DOMAIN_ID"] = str(free_domain())
     os.environ["ROS_AUTOMATIC_DISCOVERY_RANGE"] = "LOCALHOST"
     log = folder.path / "tracker.log"
-    with TrackerProcess(executable, _arguments(bag, parameters), log) as tracker:
-        return play(bag, folder, init=init, rate=rate, wait=START_UP, alive=tracker.check)
+    folder.clear()
+    with StopRequest() as stop:
+        with TrackerProcess(executable, _arguments(bag, parameters), log) as tracker:
+            stamps = play(
+                bag, folder.bag, stop, rate=rate, init=init, wait=START_UP, alive=tracker.check
+            )
+        return write_report(bag, stamps, folder), not stop
 
 
 def _arguments(bag: BagReader, parameters: Sequence[str]) -> list[str]:

@@ -1,0 +1,122 @@
+from __future__ import annotations
+
+import av
+import numpy as np
+import pytest
+
+from het_ros import Box, State
+from het_ros.tools.drawing import annotate
+from het_ros.tools.plot import plot_track
+from het_ros.tools.results import Row, read_csv, write_csv
+from het_ros.tools.video import VideoWriter
+
+ROWS = [
+    Row(10**18, Box(1.5, -2.25, 17, 50), (3.125, -0.5), 1.0, State.TRACKING),
+    Row(10**18 + 33_333_333, Box(0, 0, 17, 50), (0.0, 0.0), 0.25, State.COASTING),
+    Row(10**18 + 66_666_667, None, None, 0.0, State.LOST),
+    Row(10**18 + 100_000_000),
+    Row(10**18 + 133_333_333, None, None, 0.0, State.IDLE),
+]
+
+
+def test_rows_come_back_from_the_csv(tmp_path):
+    write_csv(ROWS, tmp_path / "track.csv")
+    assert read_csv(tmp_path / "track.csv") == ROWS
+    lines = (tmp_path / "track.csv").read_text().splitlines()
+    assert lines[:2] == [
+        "stamp,x,y,w,h,vx,vy,score,state",
+        "1000000000.000000000,1.500,-2.250,17.000,50.000,3.125,-0.500,1.0000,TRACKING",
+    ]
+    assert lines[4] == "1000000000.100000000,,,,,,,,"
+
+
+def test_another_csv_is_refused(tmp_path):
+    (tmp_path / "other.csv").write_text("a,b\n1,2\n")
+    with pytest.raises(ValueError, match=r"no track\.csv"):
+        read_csv(tmp_path / "other.csv")
+
+
+@pytest.mark.parametrize("row", ROWS)
+@pytest.mark.parametrize("shape", [(48, 64), (480, 640, 3), (33, 1301, 3)])
+def test_every_answer_can_be_drawn(row, shape):
+    image = np.full(shape, 90, np.uint8)
+    canvas = annotate(image, row, Box(5, 5, 10, 10))
+    assert canvas.ndim == 3
+    assert canvas.shape[1] >= 640
+    assert (image == 90).all()
+    assert len(np.unique(canvas)) > 1
+
+
+def test_the_box_is_drawn_where_it_is():
+    """A box of whole px gets its line on the border between inside and outside."""
+    row = Row(1, Box(200, 100, 40, 60), None, None, State.TRACKING)
+    canvas = annotate(np.zeros((480, 640, 3), np.uint8), row, None)
+    ys, xs = np.nonzero(canvas[:300, :, 1] > 60)
+    assert (xs.min() + xs.max() + 1) / 2 == pytest.approx(220, abs=0.5)
+    assert (ys.min() + ys.max() + 1) / 2 == pytest.approx(130, abs=0.5)
+    assert np.ptp(xs) + 1 == pytest.approx(40, abs=4)
+
+
+def decoded(path) -> tuple[av.video.stream.VideoStream, list]:
+    with av.open(str(path)) as container:
+        stream = container.streams.video[0]
+        return stream, [(float(f.pts * f.time_base), f) for f in container.decode(stream)]
+
+
+def test_a_video_shows_every_frame_at_its_stamp(tmp_path):
+    stamps = [0, 100, 200, 600, 700]  # ms: a gap in it
+    with VideoWriter(tmp_path / "v.mp4", 10) as video:
+        for grey, stamp in enumerate(stamps):
+            video.add(np.full((121, 81, 3), 40 * grey, np.uint8), stamp * 10**6)
+    stream, frames = decoded(tmp_path / "v.mp4")
+    assert stream.codec_context.name == "h264"
+    assert (stream.width, stream.height, stream.pix_fmt) == (80, 120, "yuv420p")
+    assert [time for time, _ in frames] == pytest.approx([s / 1000 for s in stamps], abs=1e-4)
+    greys = [frame.to_ndarray(format="gray").mean() for _, frame in frames]
+    assert greys == pytest.approx([0, 40, 80, 120, 160], abs=6)
+
+
+def test_a_browser_finds_the_index_first(tmp_path):
+    with VideoWriter(tmp_path / "v.mp4", 30) as video:
+        video.add(np.zeros((64, 64, 3), np.uint8), 0)
+    data = (tmp_path / "v.mp4").read_bytes()
+    assert 0 < data.find(b"moov") < data.find(b"mdat")
+
+
+@pytest.mark.parametrize("stamps", [[5, 5, 5], [10**9, 0, 2 * 10**9]], ids=["frozen", "backwards"])
+def test_strange_stamps_still_make_a_video(tmp_path, stamps):
+    with VideoWriter(tmp_path / "v.mp4", 30) as video:
+        for stamp in stamps:
+            video.add(np.zeros((64, 64, 3), np.uint8), stamp)
+    assert len(decoded(tmp_path / "v.mp4")[1]) == 3
+
+
+def test_an_interrupted_video_can_be_seen(tmp_path):
+    with pytest.raises(KeyboardInterrupt), VideoWriter(tmp_path / "v.mp4", 30) as video:
+        for index in range(10):
+            video.add(np.zeros((64, 64, 3), np.uint8), index * 33 * 10**6)
+        raise KeyboardInterrupt
+    assert len(decoded(tmp_path / "v.mp4")[1]) == 10
+
+
+def test_a_camera_that_changes_its_size_still_makes_a_video(tmp_path):
+    with VideoWriter(tmp_path / "v.mp4", 30) as video:
+        video.add(np.zeros((64, 64, 3), np.uint8), 0)
+        video.add(np.zeros((120, 160, 3), np.uint8), 33 * 10**6)
+    assert [(f.width, f.height) for _, f in decoded(tmp_path / "v.mp4")[1]] == [(64, 64)] * 2
+
+
+@pytest.mark.parametrize(
+    ("rows", "truth"),
+    [
+        (ROWS, [None] * 5),
+        (ROWS, [Box(0, 0, 17, 50), None, Box(1, 1, 5, 5), Box(1, 1, 5, 5), None]),
+        (ROWS[3:4], [None]),
+        ([], []),
+    ],
+    ids=["no truth", "truth", "nothing answered", "no frames"],
+)
+def test_every_track_can_be_plotted(tmp_path, rows, truth):
+    strip = [(i, np.zeros((48, 64, 3), np.uint8)) for i in range(len(rows))]
+    plot_track(tmp_path / "track.png", rows, truth, strip, "a test")
+    assert (tmp_path / "track.png").read_bytes().startswith(b"\x89PNG")
