@@ -16,7 +16,18 @@ COMMANDS = {
     "evaluate": "het_ros.evaluation.cli",
 }
 
-# Real robots take these from apt (package.xml); `make run` takes them from PyPI.
+# What scoring, tables and pictures of `evaluate` and `bench` need beside a cv2.
+SCORING = [
+    "joblib>=1.2",
+    "threadpoolctl>=3.0",
+    "jinja2>=3.0",
+    "pyyaml>=5.4",
+    "tqdm>=4.60",
+    "matplotlib>=3.5",
+    "av>=10",
+]
+
+# Real robots take ROS and OpenCV from apt (package.xml); `make` takes them from PyPI.
 EXTRAS = {
     # ROS 2 Jazzy itself, for machines without apt's.
     "ros": [
@@ -28,15 +39,10 @@ EXTRAS = {
     "opencv": ["opencv-python-headless>=4.6"],
     # Reading, writing, playing and drawing bags.
     "bags": ["rosbags>=0.10,<0.12", "tqdm>=4.60", "matplotlib>=3.5", "av>=10"],
-    # Benchmark with OpenCV's trackers, in an environment of its own: its cv2 is the contrib one.
-    "evaluate": [
-        "opencv-contrib-python-headless>=4.6",
-        "joblib>=1.2",
-        "tqdm>=4.60",
-        "matplotlib>=3.5",
-        "jinja2>=3.0",
-        "av>=10",
-    ],
+    # Comparison with OpenCV's trackers, in an environment of its own.
+    "evaluate": ["opencv-contrib-python-headless>=4.6", *SCORING],
+    # Scoring on a Dask cluster.
+    "cluster": ["distributed>=2023.1"],
     # colcon still needs `setup.py develop`, which setuptools 80 took away.
     "build": ["colcon-common-extensions>=0.3", "setuptools>=65,<80"],
     "test": [
@@ -46,8 +52,8 @@ EXTRAS = {
         "mypy>=1.10",
         "import-linter>=2.0",
         "catkin-pkg>=1.0",
-        "joblib>=1.2",
-        "jinja2>=3.0",
+        "distributed>=2023.1",
+        *SCORING,
     ],
 }
 
