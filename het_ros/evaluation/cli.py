@@ -5,17 +5,22 @@ from __future__ import annotations
 import argparse
 import json
 import sys
+from collections.abc import Iterator
 from pathlib import Path
 
-from het_ros.evaluation import opencv_peers, raw_boxes, report
+from het_ros.evaluation import opencv_peers, published, raw_boxes, report, tables
 from het_ros.evaluation.cache import Cache
+from het_ros.evaluation.drawing import colours
 from het_ros.evaluation.jobs import SourceChangedError
+from het_ros.evaluation.plots import plots
 from het_ros.evaluation.protocols import PROTOCOLS
 from het_ros.evaluation.readers import read_sequences
-from het_ros.evaluation.runs import Plan, carry_out_plan
-from het_ros.evaluation.summary import score_runs, summarise
-from het_ros.evaluation.timing import time_trackers
+from het_ros.evaluation.runs import Plan, Run, carry_out_plan
+from het_ros.evaluation.strips import strips
+from het_ros.evaluation.summary import Scored, score_runs, summarise
+from het_ros.evaluation.timing import Timing, time_trackers
 from het_ros.evaluation.trackers import DEFAULT, TrackerSpec, split_names, tracker_spec
+from het_ros.evaluation.video import write_videos
 
 EXAMPLE = """\
 examples:
@@ -72,6 +77,12 @@ def parser() -> argparse.ArgumentParser:
         "the speed is then a rough one from the scored runs",
     )
     p.add_argument("--published", type=Path, help="JSON of published figures to show beside")
+    p.add_argument(
+        "--published-except",
+        default="",
+        metavar="SEQUENCES",
+        help="comma-separated; sequences of DATA that are not the published ones",
+    )
     p.add_argument("--video", action="store_true", help="one annotated MP4 a sequence")
     p.add_argument("--quiet", action="store_true", help="no progress bar")
     return p
@@ -89,20 +100,47 @@ def evaluate(options: argparse.Namespace) -> int:
     )
     cache = Cache(options.out / "cache")
     runs = carry_out_plan(plan, cache, options.jobs, options.scheduler, options.quiet)
-    seconds = {}
+    timing = Timing()
     if options.timing > 0:
-        seconds = time_trackers(
-            plan.trackers, plan.sequences, options.timing, cache, options.quiet
+        folder = options.out / "cache" / "timing"
+        timing = time_trackers(
+            plan.trackers, plan.sequences, options.timing, folder, options.quiet
         )
     scored = score_runs(runs, plan.sequences)
-    results = summarise(plan, scored, seconds)
+    results = summarise(plan, scored, timing)
     options.out.mkdir(parents=True, exist_ok=True)
-    (options.out / "results.json").write_text(json.dumps(results, indent=1) + "\n")
+    (options.out / "results.json").write_text(
+        json.dumps(results, indent=1, allow_nan=False) + "\n"
+    )
     raw_boxes.write(runs, {t.name: t.folder for t in plan.trackers}, options.out / "boxes")
-    report.write(results, options.out)
-    print(report.table(results))
-    print(f"\n{options.out / 'results.json'}, report.md")
+    print(tables.summary(results).markdown())
+    for file in _report(options, plan, runs, scored, results):
+        print(file)
     return 0
+
+
+def _report(
+    options: argparse.Namespace,
+    plan: Plan,
+    runs: list[Run],
+    scored: list[Scored],
+    results: tables.Results,
+) -> Iterator[Path]:
+    """Write what people look at; each file is handed back as soon as it is there."""
+    yield options.out / "results.json"
+    best_first = tables.ranked(results)
+    palette = colours([tracker.name for tracker in plan.trackers])
+    comparison = None
+    if options.published:
+        excluded = options.published_except.split(",")
+        comparison = published.compare(options.published, results, excluded)
+    drawn, listed = plots(results, palette), tables.tables(results, comparison)
+    yield report.write_markdown(results, listed, drawn, options.out)
+    pictures = strips(scored, plan.sequences, best_first, palette)
+    yield report.write_html(results, listed, drawn, pictures, palette, options.out)
+    if options.video:
+        folder = options.out / "video"
+        yield from write_videos(runs, plan.sequences, palette, folder, options.quiet)
 
 
 def _trackers(text: str) -> list[TrackerSpec]:

@@ -1,59 +1,94 @@
-"""The figures as text for people."""
+"""``report.md`` and a self-contained ``report.html``."""
 
 from __future__ import annotations
 
+import base64
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-Results = dict[str, Any]
+import jinja2
+
+from het_ros.evaluation.drawing import Colour
+from het_ros.evaluation.strips import SHOWN
+from het_ros.evaluation.tables import Results, Table, ranked
+
+TEMPLATES = Path(__file__).parent / "templates"
 
 
-def ranked(results: Results) -> list[str]:
-    """The trackers' names, best AUC first."""
-    trackers = results["trackers"]
-    return sorted(trackers, key=lambda name: -trackers[name]["auc"])
+def write_markdown(
+    results: Results, tables: list[Table], plots: Mapping[str, bytes], out: Path
+) -> Path:
+    """Write ``out/report.md``, with its plots as files in ``out/plots``."""
+    (out / "plots").mkdir(parents=True, exist_ok=True)
+    for name, png in plots.items():
+        (out / "plots" / f"{name}.png").write_bytes(png)
+    parts = [f"# {title(results)}", ", ".join(results["machine"].values())]
+    pictures = " ".join(f"![{name}](plots/{name}.png)" for name in plots)
+    for number, table in enumerate(tables):
+        parts += [f"## {table.title}", table.markdown()]
+        parts += [table.note] if table.note else []
+        parts += [pictures] if number == 0 else []
+    parts += [f"## Failures\n\n{_failures_text(results)}"] if _failures(results) else []
+    file = out / "report.md"
+    file.write_text("\n\n".join(parts) + "\n")
+    return file
 
 
-def table(results: Results) -> str:
-    """One row a tracker, best AUC first, in Markdown."""
-    lines = [
-        "| tracker | AUC | P20 | norm. precision | mean overlap | frames/s | p99 ms | seeds |",
-        "|---|---|---|---|---|---|---|---|",
-    ]
-    for name in ranked(results):
-        t = results["trackers"][name]
-        fps, p99 = (f"{t[k]:.1f}" if t[k] else "-" for k in ("fps", "p99_ms"))
-        auc, p20 = (_with_deviation(t, key) for key in ("auc", "p20"))
-        lines.append(
-            f"| {name} | {auc} | {p20} | {t['norm_precision']:.3f} | {t['mean_overlap']:.3f} "
-            f"| {fps} | {p99} | {t['seeds']} |"
-        )
-    return "\n".join(lines)
-
-
-def _with_deviation(figures: dict[str, Any], key: str) -> str:
-    text = f"{figures[key]:.3f}"
-    return f"{text} ± {figures[key + '_std']:.3f}" if figures.get("seeds", 1) > 1 else text
-
-
-def sequence_table(results: Results, figure: str = "auc") -> str:
-    """One row a sequence, one column a tracker, the best in bold, in Markdown."""
-    names = ranked(results)
-    lines = [f"| sequence | {' | '.join(names)} |", "|---" * (len(names) + 1) + "|"]
-    for sequence in results["sequences"]:
-        values = [results["trackers"][n]["sequences"][sequence][figure] for n in names]
-        cells = [f"**{v:.3f}**" if v == max(values) else f"{v:.3f}" for v in values]
-        lines.append(f"| {sequence} | {' | '.join(cells)} |")
-    return "\n".join(lines)
-
-
-def write(results: Results, out: Path) -> None:
-    """Write ``out/report.md``."""
-    machine = ", ".join(results["machine"].values())
-    text = (
-        f"# {results['protocol'].upper()}: {len(results['sequences'])} sequences, "
-        f"{results['seeds']} seeds\n\n{machine}\n\n{table(results)}\n\n"
-        f"## AUC by sequence\n\n{sequence_table(results)}\n\n"
-        f"## Precision at 20 px by sequence\n\n{sequence_table(results, 'p20')}\n"
+def write_html(
+    results: Results,
+    tables: list[Table],
+    plots: Mapping[str, bytes],
+    strips: Mapping[str, bytes],
+    palette: Mapping[str, Colour],
+    out: Path,
+) -> Path:
+    """Write ``out/report.html``; its pictures are inside, so one file is the whole report."""
+    environment = jinja2.Environment(
+        loader=jinja2.FileSystemLoader(TEMPLATES), autoescape=True, trim_blocks=True
     )
-    (out / "report.md").write_text(text)
+    names = ranked(results)
+    page = environment.get_template("report.html.j2").render(
+        title=title(results),
+        machine=", ".join(results["machine"].values()),
+        tables=tables,
+        plots={name: _data_uri(png, "png") for name, png in plots.items()},
+        strips={name: _data_uri(jpeg, "jpeg") for name, jpeg in strips.items()},
+        names=names,
+        shown=names[:SHOWN],
+        css={name: "rgb({}, {}, {})".format(*palette[name]) for name in names},
+        failures=_failures(results),
+    )
+    file = out / "report.html"
+    file.write_text(page)
+    return file
+
+
+def title(results: Results) -> str:
+    """What was run."""
+    kinds = {
+        "ope": "One-pass evaluation",
+        "tre": "Temporal robustness (20 starts)",
+        "sre": "Spatial robustness (12 disturbed starts)",
+        "realtime": "Real time",
+        "restart": "Restart after failure",
+    }
+    count = len(results["sequences"])
+    return f"{kinds[results['protocol']]}: {count} sequences, {results['seeds']} seeds"
+
+
+def _failures(results: Results) -> list[dict[str, Any]]:
+    return [
+        {"tracker": name, **failure}
+        for name, figures in results["trackers"].items()
+        for failure in figures["errors"]
+    ]
+
+
+def _failures_text(results: Results) -> str:
+    form = "- {tracker}, {sequence}, seed {seed}, {start}: {error}"
+    return "\n".join(form.format(**failure) for failure in _failures(results))
+
+
+def _data_uri(data: bytes, kind: str) -> str:
+    return f"data:image/{kind};base64,{base64.b64encode(data).decode()}"

@@ -16,7 +16,7 @@ from het_ros.evaluation import restarts, state_metrics
 from het_ros.evaluation.metrics import Score, score
 from het_ros.evaluation.runs import Plan, Run
 from het_ros.evaluation.sequences import Sequence
-from het_ros.evaluation.timing import Seconds
+from het_ros.evaluation.timing import Timing
 
 FIGURES = ("auc", "p20", "norm_precision", "mean_overlap")
 
@@ -35,7 +35,7 @@ def score_runs(runs: Iterable[Run], sequences: Listing[Sequence]) -> list[Scored
     return [Scored(run, score(run.track.boxes, truth[run.sequence][run.first :])) for run in runs]
 
 
-def summarise(plan: Plan, scored: Listing[Scored], seconds: Seconds) -> dict[str, Any]:
+def summarise(plan: Plan, scored: Listing[Scored], timing: Timing) -> dict[str, Any]:
     """The content of ``results.json``.
 
     A random tracker's figures are means over its seeds; ``*_std`` is the sample standard
@@ -46,11 +46,12 @@ def summarise(plan: Plan, scored: Listing[Scored], seconds: Seconds) -> dict[str
     trackers = {}
     for spec in plan.trackers:
         own = [s for s in scored if s.run.tracker == spec.name]
-        trackers[spec.name] = _tracker(plan, spec.name, own, sequences, seconds)
+        trackers[spec.name] = _tracker(plan, spec.name, own, sequences, timing)
     return {
         "protocol": plan.protocol,
         "seeds": plan.seeds,
         "machine": machine(),
+        "timing": {"frames": timing.frames, "load": timing.load},
         "sequences": list(sequences),
         "trackers": trackers,
     }
@@ -61,7 +62,7 @@ def _tracker(
     name: str,
     own: list[Scored],
     sequences: Mapping[str, Sequence],
-    seconds: Seconds,
+    timing: Timing,
 ) -> dict[str, Any]:
     if plan.protocol == "realtime":
         main = 30.0 if 30.0 in plan.cameras else plan.cameras[0]
@@ -73,7 +74,7 @@ def _tracker(
         mean, deviation = mean_and_deviation(own, figure)
         figures[figure] = mean
         figures[f"{figure}_std"] = deviation
-    figures |= speed(_times(name, own, seconds))
+    figures |= speed(_times(name, own, timing))
     figures["seeds"] = len({s.run.seed for s in own})
     figures["errors"] = [
         {"sequence": s.run.sequence, "seed": s.run.seed, "start": s.run.variant, "error": e}
@@ -83,7 +84,7 @@ def _tracker(
     figures["success_curve"] = _curve(by_sequence, "success")
     figures["precision_curve"] = _curve(by_sequence, "precision")
     figures["sequences"] = {
-        sequence: _sequence(name, sequence, group, seconds)
+        sequence: _sequence(name, sequence, group, timing)
         for sequence, group in by_sequence.items()
     }
     figures["attributes"] = _attributes(figures["sequences"], sequences)
@@ -96,11 +97,11 @@ def _tracker(
     return figures
 
 
-def _sequence(name: str, sequence: str, group: list[Scored], seconds: Seconds) -> dict[str, Any]:
+def _sequence(name: str, sequence: str, group: list[Scored], timing: Timing) -> dict[str, Any]:
     figures: dict[str, Any] = {}
     for figure in FIGURES:
         figures[figure], figures[f"{figure}_std"] = mean_and_deviation(group, figure)
-    figures |= speed(_times(name, group, seconds))
+    figures |= speed(_times(name, group, timing))
     figures["frames"] = max(s.score.frames for s in group)
     return figures
 
@@ -128,10 +129,12 @@ def speed(seconds: np.ndarray) -> dict[str, float | None]:
     }
 
 
-def _times(name: str, own: Listing[Scored], seconds: Seconds) -> np.ndarray:
+def _times(name: str, own: Listing[Scored], timing: Timing) -> np.ndarray:
     """From the timing runs; where there are none, from the scored ones, which shared the CPU."""
     names = sorted({s.run.sequence for s in own})
-    timed = [seconds[name, sequence] for sequence in names if (name, sequence) in seconds]
+    timed = [
+        timing.seconds[name, sequence] for sequence in names if (name, sequence) in timing.seconds
+    ]
     return np.concatenate(timed or [s.run.track.seconds[1:] for s in own])
 
 

@@ -2,79 +2,104 @@
 
 from __future__ import annotations
 
+import json
+import os
 import time
+from collections.abc import Mapping
 from collections.abc import Sequence as Listing
+from dataclasses import dataclass, field
+from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 from tqdm import tqdm
 
-from het_ros.evaluation.answers import Track
-from het_ros.evaluation.cache import Cache, key_of
+from het_ros.evaluation.cache import key_of
 from het_ros.evaluation.jobs import one_thread
 from het_ros.evaluation.sequences import Frames, Sequence
-from het_ros.evaluation.trackers import TrackerSpec
+from het_ros.evaluation.trackers import Tracker, TrackerSpec
 from het_ros.tracking.box import Box
 
 BLOCK = 10  # frames that a tracker gets in a row, with its caches warm
 
-Seconds = dict[tuple[str, str], NDArray[np.float64]]
+
+@dataclass(frozen=True)
+class Timing:
+    """What was measured.
+
+    Attributes:
+        seconds: time of each ``update``, s, by (tracker, sequence); NaN where it failed.
+        load: highest load average of the machine when a sequence's timing began. Well over 1
+            says that other processes took their share, and that the figures are too low.
+        frames: updates timed at most on a sequence; 0: nothing was timed.
+    """
+
+    seconds: Mapping[tuple[str, str], NDArray[np.float64]] = field(default_factory=dict)
+    load: float = 0.0
+    frames: int = 0
 
 
 def time_trackers(
     trackers: Listing[TrackerSpec],
     sequences: Listing[Sequence],
     frames: int,
-    cache: Cache,
+    folder: Path,
     quiet: bool = False,
-) -> Seconds:
-    """Time of ``update``, s, by (tracker, sequence): the first ``frames`` updates of each.
+) -> Timing:
+    """Time the first ``frames`` updates of every tracker on every sequence.
 
-    All trackers of a comparison are timed together or not at all: results are kept under the
-    whole list of trackers, so that no ratio compares two days.
+    All trackers of a comparison are timed together or not at all: what is kept in ``folder`` is
+    kept for the whole list of trackers, so that no ratio compares two days.
     """
-    seconds: Seconds = {}
+    folder.mkdir(parents=True, exist_ok=True)
+    seconds, load = {}, 0.0
     comparison = [tracker.fingerprint for tracker in trackers]
     with tqdm(sequences, unit="sequence", desc="timing", disable=quiet) as bar:
         for sequence in bar:
             key = key_of(comparison, sequence.frames.fingerprint(), frames)
-            names = [f"timing/{sequence.name}/{tracker.folder}_{key}" for tracker in trackers]
-            saved = [cache.load(name) for name in names]
-            if any(track is None for track in saved):
+            file = folder / f"{sequence.name}_{key}.json"
+            if not file.is_file():
                 part = Frames(sequence.frames.files[: frames + 1], sequence.frames.rate)
-                saved = _interleaved(trackers, part, Box(*sequence.truth[0]))
-                for name, track in zip(names, saved, strict=True):
-                    cache.save(name, track)
-            for tracker, track in zip(trackers, saved, strict=True):
-                seconds[tracker.name, sequence.name] = track.seconds
-    return seconds
+                begun = os.getloadavg()[0]
+                times = _interleaved(trackers, part, Box(*sequence.truth[0]))
+                file.write_text(json.dumps({"load": begun, "seconds": [list(t) for t in times]}))
+            saved = json.loads(file.read_text())
+            load = max(load, saved["load"])
+            for tracker, times in zip(trackers, saved["seconds"], strict=True):
+                seconds[tracker.name, sequence.name] = np.array(times)
+    return Timing(seconds, load, frames)
 
 
-def _interleaved(trackers: Listing[TrackerSpec], frames: Frames, box: Box) -> list[Track]:
-    """Blocks of frames in turn: each tracker does one block, then the next tracker does it."""
+def _interleaved(
+    trackers: Listing[TrackerSpec], frames: Frames, box: Box
+) -> list[NDArray[np.float64]]:
+    """Blocks of frames in turn: each tracker does one block, then the next tracker does it.
+
+    Returns:
+        For each tracker the times of ``update``, s; NaN from where it failed.
+    """
     images = [frames[row] for row in range(len(frames))]
-    tracks = [Track.empty(len(frames)) for _ in trackers]
-    built = []
+    times = [np.full(len(images) - 1, np.nan) for _ in trackers]
     with one_thread():
-        for spec, track in zip(trackers, tracks, strict=True):
-            tracker = spec.build(0)
-            built.append(tracker)
-            _timed(lambda t=tracker: t.init(images[0], box), track)
+        built = [_started(spec, images[0], box) for spec in trackers]
         for first in range(1, len(images), BLOCK):
             block = range(first, min(first + BLOCK, len(images)))
-            for tracker, track in zip(built, tracks, strict=True):
-                for row in block:
-                    if not track.error:
-                        _timed(lambda t=tracker, i=images[row]: t.update(i, frames.dt), track, row)
-    return tracks
+            for k, tracker in enumerate(built):
+                for row in block if built[k] is not None else ():
+                    begun = time.perf_counter()
+                    try:
+                        tracker.update(images[row], frames.dt)
+                    except Exception:  # the scored runs record what it died of
+                        built[k] = None
+                        break
+                    times[k][row - 1] = time.perf_counter() - begun
+    return times
 
 
-def _timed(call, track: Track, row: int | None = None) -> None:
-    begun = time.perf_counter()
+def _started(spec: TrackerSpec, image: NDArray[np.uint8], box: Box) -> Tracker | None:
+    tracker = spec.build(0)
     try:
-        call()
-    except Exception as error:  # recorded as a failure by the scored runs
-        track.error = str(error) or type(error).__name__
-        return
-    if row is not None:
-        track.seconds[row] = time.perf_counter() - begun
+        tracker.init(image, box)
+    except Exception:  # the scored runs record what it died of
+        return None
+    return tracker
