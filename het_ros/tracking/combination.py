@@ -37,7 +37,8 @@ def weights(scores: Floats, low: float, high: float) -> Floats:
         high: weight of the best one.
     """
     deviation = scores.std()
-    if not deviation > 0:
+    # Scores that differ by rounding alone are equal.
+    if deviation <= 1e-12 * np.abs(scores).max():
         return np.full(scores.shape, (low + high) / 2)
     normalised = (scores - scores.mean()) / deviation
     least, most = normalised.min(), normalised.max()

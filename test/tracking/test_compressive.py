@@ -1,0 +1,100 @@
+import numpy as np
+import pytest
+from reference import all_features
+
+from het_ros.tracking.compressive import (
+    CompressiveFeatures,
+    draw_measurement_matrix,
+    integral_images,
+    raw_feature_maps,
+)
+
+
+def draw(size=(9, 13), channels=3, features=200, rectangles=4, seed=0):
+    rng = np.random.default_rng(seed)
+    return draw_measurement_matrix(size, channels, features, rectangles, rng)
+
+
+def random_planes(shape=(20, 25), count=3, seed=1):
+    rng = np.random.default_rng(seed)
+    return [rng.integers(0, 256, shape, dtype=np.uint8) for _ in range(count)]
+
+
+@pytest.mark.parametrize("size", [(9, 13), (3, 3), (1, 1), (1, 40)], ids=str)
+@pytest.mark.parametrize("most", [1, 2, 4])
+def test_rows_hold_few_rectangles_inside_the_sub_patch(size, most):
+    rows = draw(size=size, rectangles=most).rows
+    assert len(rows) == 200
+    assert {len(row) for row in rows} == set(range(min(2, most), most + 1))
+    for row in rows:
+        assert len({rectangle.channel for rectangle in row}) == 1
+        for channel, x0, y0, x1, y1, sign in row:
+            assert channel in (0, 1, 2)
+            assert 0 <= x0 < x1 <= size[0]
+            assert 0 <= y0 < y1 <= size[1]
+            assert sign in (-1, 1)
+
+
+def test_matrix_draws_all_of_its_kind():
+    rectangles = [rectangle for row in draw(features=600).rows for rectangle in row]
+    assert {r.channel for r in rectangles} == {0, 1, 2}
+    assert 0.45 < np.mean([r.sign > 0 for r in rectangles]) < 0.55
+    assert min(r.x0 for r in rectangles) == 0
+    assert max(r.x1 for r in rectangles) == 9
+    assert max(r.y1 for r in rectangles) == 13
+
+
+def test_matrix_is_its_generators():
+    assert draw(seed=3) == draw(seed=3)
+    assert draw(seed=3) != draw(seed=4)
+
+
+@pytest.mark.parametrize(
+    ("size", "shape"),
+    [((9, 13), (20, 25)), ((9, 13), (13, 9)), ((1, 1), (4, 5)), ((20, 3), (9, 21))],
+    ids=str,
+)
+def test_maps_are_exact_sums(size, shape):
+    planes = random_planes(shape)
+    matrix = draw(size=size, features=25)
+    maps = raw_feature_maps(integral_images(planes), matrix)
+    assert maps.dtype == np.int32
+    assert maps.shape == (25, shape[0] - size[1] + 1, shape[1] - size[0] + 1)
+    whole = [plane.astype(int) for plane in planes]
+    for (x, y), values in all_features(whole, matrix.rows, size).items():
+        assert maps[:, y, x].tolist() == values
+
+
+def test_maps_of_channels_in_floats():
+    planes = [plane.astype(np.float32) / 8 for plane in random_planes()]
+    matrix = draw(features=25)
+    maps = raw_feature_maps(integral_images(planes), matrix)
+    slow = all_features([p * 8 for p in planes], matrix.rows, matrix.size)
+    np.testing.assert_allclose(maps[:, 2, 3] * 8, slow[3, 2], rtol=1e-9)
+
+
+def test_buffer_is_used_again_and_leaves_no_trace():
+    matrix = draw(features=25)
+    first = raw_feature_maps(integral_images(random_planes(seed=1)), matrix)
+    fresh = raw_feature_maps(integral_images(random_planes(seed=2)), matrix)
+    again = raw_feature_maps(integral_images(random_planes(seed=2)), matrix, first.base)
+    assert np.shares_memory(first, again)
+    np.testing.assert_array_equal(again, fresh)
+
+
+def test_first_maps_are_standardised_and_fix_the_scale():
+    features = CompressiveFeatures(draw(features=40))
+    planes = random_planes((60, 70))
+    first = features.maps(integral_images(planes)).copy()
+    np.testing.assert_allclose(first.mean(axis=(1, 2)), 0, atol=0.01)
+    np.testing.assert_allclose(first.std(axis=(1, 2)), 1, rtol=1e-6)
+    brighter = [np.clip(plane, 0, 200) + 55 for plane in planes]
+    assert features.maps(integral_images(brighter)).std() != pytest.approx(1, abs=0.01)
+    np.testing.assert_allclose(features.maps(integral_images(planes)), first)
+
+
+def test_flat_image_gives_finite_features():
+    features = CompressiveFeatures(draw())
+    flat = [np.full((30, 30), 77, np.uint8)] * 3
+    np.testing.assert_array_equal(features.maps(integral_images(flat)), 0)
+    assert np.isfinite(features.maps(integral_images(random_planes((30, 30))))).all()

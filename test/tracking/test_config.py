@@ -1,0 +1,55 @@
+import dataclasses
+
+import pytest
+
+from het_ros import TrackerConfig
+from het_ros.tracking.parameter import parameters_of
+
+
+def test_the_papers_constants():
+    paper = TrackerConfig.paper(seed=3)
+    assert paper.seed == 3
+    assert (paper.sub_patches, paper.sub_patch_fraction) == (11, 0.75)
+    assert (paper.features, paper.rectangles) == (150, 4)
+    assert (paper.learning_rate, paper.search_radius) == (0.85, 20)
+    assert (paper.weight_low, paper.weight_high) == (0.1, 0.9)
+
+
+@pytest.mark.parametrize(
+    ("change", "says"),
+    [
+        ({"sub_patches": 0}, "sub_patches lies in"),
+        ({"sub_patches": 2.5}, "takes a int"),
+        ({"seed": True}, "takes a int"),
+        ({"learning_rate": float("nan")}, "lies in"),
+        ({"learning_rate": 1.01}, "lies in"),
+        ({"learning_rate": "high"}, "takes a float"),
+        ({"channels": ("b", "infrared")}, "infrared"),
+        ({"channels": ()}, "at least one"),
+        ({"channels": "b"}, "takes a tuple"),
+        ({"positive_radius": 9.0}, "must not exceed negative_radius"),
+        ({"search_radius": 7.0}, "must not exceed search_radius"),
+        ({"weight_low": 0.95}, "must not exceed weight_high"),
+    ],
+)
+def test_what_does_not_fit_is_refused(change, says):
+    with pytest.raises(ValueError, match=says):
+        TrackerConfig(**change)
+
+
+def test_whole_numbers_pass_as_floats():
+    assert TrackerConfig(search_radius=25).search_radius == 25
+
+
+def test_configurations_are_frozen():
+    with pytest.raises(dataclasses.FrozenInstanceError):
+        TrackerConfig().seed = 4
+
+
+@pytest.mark.parametrize("declared", parameters_of(TrackerConfig), ids=lambda p: p.name)
+def test_every_parameter_is_declared_in_full(declared):
+    assert declared.doc
+    if isinstance(declared.default, (int, float)):
+        assert declared.low <= declared.default <= declared.high
+        for edge in (declared.low, declared.high):
+            declared.check(type(declared.default)(edge))
