@@ -43,12 +43,17 @@ class Panorama:
 def _paint_ring(rng: np.random.Generator) -> np.ndarray:
     width, height = int(2 * np.pi * RING), ABOVE + BELOW
     up = np.linspace(1, 0, ABOVE, dtype=np.float32)[:, None, None]
-    sky = np.array([205, 160, 105]) * up + np.array([232, 222, 205]) * (1 - up)
+    sky = up * np.float32([205, 160, 105]) + (1 - up) * np.float32([232, 222, 205])
     ring = np.empty((height, width, 3), np.float32)
     ring[:ABOVE] = sky
     ring[ABOVE:] = (120, 150, 135)
     clouds = ring_fractal(rng, ABOVE, width, 130, 6)
-    clouds += 0.6 * cv2.resize(clouds, None, fx=1, fy=0.5)[[0] * (ABOVE - ABOVE // 2) + list(range(ABOVE // 2))]
+    clouds += (
+        0.6
+        * cv2.resize(clouds, None, fx=1, fy=0.5)[
+            [0] * (ABOVE - ABOVE // 2) + list(range(ABOVE // 2))
+        ]
+    )
     cover = np.clip(clouds * 0.55 - 0.1, 0, 1)[..., None]
     lit = 236 + 14 * np.roll(clouds, 6, axis=0)[..., None] - 26 * cover
     ring[:ABOVE] = ring[:ABOVE] * (1 - cover) + lit * cover
@@ -60,9 +65,11 @@ def _paint_ring(rng: np.random.Generator) -> np.ndarray:
         )
         rough = ring_fractal(rng, 1, width, 9, 3)[0] * swing * 0.16
         top = ABOVE - mean - waves * 0.5 - rough
-        inside = np.clip(np.arange(height)[:, None] - top + 0.5, 0, 1)[..., None]
-        grain = 1 + 0.09 * ring_fractal(rng, height, width, 8, 3)[..., None]
-        ring = ring * (1 - inside) + np.asarray(colour) * grain * inside
+        first = int(top.min())  # nothing of this layer lies above
+        rows = np.arange(first, height, dtype=np.float32)[:, None]
+        inside = np.clip(rows - top.astype(np.float32) + 0.5, 0, 1)[..., None]
+        grain = 1 + 0.09 * ring_fractal(rng, height - first, width, 8, 3)[..., None]
+        ring[first:] += (np.float32(colour) * grain - ring[first:]) * inside
     return np.clip(ring, 0, 255).astype(np.uint8)
 
 
@@ -77,7 +84,9 @@ class Houses:
         ends = _clip_near(camera)
         if ends is None:
             return
-        corners = np.array([(x, y, FRONT) for x, y in zip(ends * 2, (0, 0, TALLEST, TALLEST), strict=True)])
+        corners = np.array(
+            [(x, y, FRONT) for x, y in zip(ends * 2, (0, 0, TALLEST, TALLEST), strict=True)]
+        )
         right, up, depth = to_camera(corners, camera).T
         columns = lens.width / 2 + lens.focal * right / depth
         rows = lens.horizon_row(camera) - lens.focal * up / depth
@@ -123,7 +132,9 @@ def _paint_houses(rng: np.random.Generator) -> np.ndarray:
     return cv2.GaussianBlur(front, (0, 0), 0.6)
 
 
-def _paint_house(rng: np.random.Generator, colour: np.ndarray, alpha: np.ndarray, tall: int) -> None:
+def _paint_house(
+    rng: np.random.Generator, colour: np.ndarray, alpha: np.ndarray, tall: int
+) -> None:
     height, span = alpha.shape
     top = height - tall
     wall = np.asarray(WALLS[rng.integers(len(WALLS))], float) * rng.uniform(0.85, 1.08)
@@ -143,7 +154,11 @@ def _paint_house(rng: np.random.Generator, colour: np.ndarray, alpha: np.ndarray
 
 
 def _paint_openings(
-    rng: np.random.Generator, colour: np.ndarray, span: int, height: int, tall: int,
+    rng: np.random.Generator,
+    colour: np.ndarray,
+    span: int,
+    height: int,
+    tall: int,
     wall: np.ndarray,
 ) -> None:
     storey = int(2.7 * GRAIN)
@@ -166,7 +181,9 @@ def _paint_openings(
             tint = rng.uniform(40, 120, 3)
             cv2.rectangle(colour, (x - 3, y - 3), (x + wide + 3, height), frame, -1)
             cv2.rectangle(colour, (x, y), (x + wide, height), tint.tolist(), -1)
-            cv2.rectangle(colour, (x + 5, y + 6), (x + wide - 5, y + 26), (tint * 0.6).tolist(), -1)
+            cv2.rectangle(
+                colour, (x + 5, y + 6), (x + wide - 5, y + 26), (tint * 0.6).tolist(), -1
+            )
         elif not shop:
             _paint_window(rng, colour, x, height - int(2.2 * GRAIN), wide, high, frame)
     if shop:
@@ -185,7 +202,12 @@ def _paint_openings(
 
 
 def _paint_window(
-    rng: np.random.Generator, colour: np.ndarray, x: int, y: int, wide: int, high: int,
+    rng: np.random.Generator,
+    colour: np.ndarray,
+    x: int,
+    y: int,
+    wide: int,
+    high: int,
     frame: tuple[int, int, int],
 ) -> None:
     cv2.rectangle(colour, (x - 3, y - 3), (x + wide + 3, y + high + 3), frame, -1)

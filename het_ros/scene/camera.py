@@ -67,7 +67,11 @@ class Lens:
 
 def to_camera(points: np.ndarray, camera: CameraState) -> np.ndarray:
     """Points (..., 3) m of the street to (right, up, forward) m seen from the camera."""
-    dx, dy, dz = points[..., 0] - camera.x, points[..., 1] - camera.height, points[..., 2] - camera.z
+    dx, dy, dz = (
+        points[..., 0] - camera.x,
+        points[..., 1] - camera.height,
+        points[..., 2] - camera.z,
+    )
     sin, cos = np.sin(camera.yaw), np.cos(camera.yaw)
     return np.stack([cos * dx - sin * dz, dy, sin * dx + cos * dz], axis=-1)
 
@@ -87,7 +91,10 @@ def plane_to_image(
 
     Args:
         origin: the point of the street, m, under the texture's top-left corner.
-        along, down: what one texel to the right, or one down, is in the street, m.
+        along: what one texel to the right is in the street, (3,) m.
+        down: what one texel down is in the street, (3,) m.
+        camera: from where it is seen.
+        lens: through what.
     """
     corner = to_camera(np.asarray(origin, float), camera)
     still = CameraState(yaw=camera.yaw, height=0.0)

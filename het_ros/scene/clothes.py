@@ -80,9 +80,7 @@ def _ends(rows: int, length: float, over: float, width: float) -> np.ndarray:
     along = np.linspace(0, length + 2 * over, rows)
     radius = min(width / 2, over * 1.4)
     inset = np.clip(radius - np.minimum(along, along[::-1]), 0, radius)
-    return 1 - (1 - np.sqrt(np.clip(1 - (inset / radius) ** 2, 0, 1))) * min(
-        2 * radius / width, 1
-    )
+    return 1 - (1 - np.sqrt(np.clip(1 - (inset / radius) ** 2, 0, 1))) * min(2 * radius / width, 1)
 
 
 def _folds(rng: np.random.Generator, rows: int, strength: float) -> np.ndarray:
@@ -166,19 +164,25 @@ def _head(rng: np.random.Generator, skin: np.ndarray, hair: np.ndarray) -> Part:
     edge = np.interp(around, [0, 0.75, 1.2, 1.75, np.pi], [fringe, fringe, 0.5, nape, nape])
     in_hair = (down < edge)[..., None]
     strands = 1 + 0.2 * fractal(rng, 1, TURN, 5, 2) + 0.08 * ring_fractal(rng, rows, TURN, 9, 3)
-    texture = np.where(in_hair, tinted(tuple(hair), strands), tinted(tuple(skin), np.ones_like(strands)))
+    texture = np.where(
+        in_hair, tinted(tuple(hair), strands), tinted(tuple(skin), np.ones_like(strands))
+    )
     for sign in (1, -1):
         eye = (int(sign * 0.42 / (2 * np.pi) * TURN) % TURN, int(0.46 * rows))
         cv2.ellipse(texture, eye, (3, 2), 0, 0, 360, (235, 238, 240), -1)
         cv2.circle(texture, eye, 1, (40, 34, 30), -1)
         cv2.line(texture, (eye[0] - 3, eye[1] - 5), (eye[0] + 3, eye[1] - 5), hair.tolist(), 1)
         ear = int(sign * 1.5 / (2 * np.pi) * TURN) % TURN
-        cv2.ellipse(texture, (ear, int(0.53 * rows)), (3, 7), 0, 0, 360, (skin * 0.82).tolist(), -1)
+        cv2.ellipse(
+            texture, (ear, int(0.53 * rows)), (3, 7), 0, 0, 360, (skin * 0.82).tolist(), -1
+        )
         mouth = slice(0, 5) if sign > 0 else slice(TURN - 5, TURN)
         texture[int(0.75 * rows) : int(0.78 * rows), mouth] = skin * (0.62, 0.6, 0.8)
         nose = slice(0, 2) if sign > 0 else slice(TURN - 2, TURN)
         texture[int(0.48 * rows) : int(0.64 * rows), nose] = skin * 1.1
     texture[int(0.84 * rows) :] *= 0.85
     curve = np.linspace(-1, 1, rows)
-    outline = np.sqrt(np.clip(1 - np.abs(curve) ** 2.3, 0, 1)) * np.interp(curve, [-1, 0.1, 1], [1, 1, 0.82])
+    outline = np.sqrt(np.clip(1 - np.abs(curve) ** 2.3, 0, 1)) * np.interp(
+        curve, [-1, 0.1, 1], [1, 1, 0.82]
+    )
     return Part(texture.astype(np.float32), outline, 0.165, 0.205, (0.125, 0.125))

@@ -12,12 +12,17 @@ from het_ros.scene.clothes import TURN, Outfit, Part
 from het_ros.scene.gait import STRIDE, joints
 from het_ros.scene.ground import SUN, shadow_of
 from het_ros.scene.path import Path
-from het_ros.scene.pixels import lay_over
+from het_ros.scene.pixels import Piece, lay_over
 from het_ros.tracking.box import Box
 
 GRAINS = (48.0, 96.0, 192.0, 384.0, 768.0)  # px a metre at which the parts are kept
+VIEW_STEP = np.radians(1.5)  # the parts are turned in steps of it
 LIMBS = (("thigh", "hip", "knee"), ("shoe", "heel", "toe"), ("shank", "knee", "ankle"))
-ARMS = (("hand", "wrist", "hand"), ("upper_arm", "shoulder", "elbow"), ("forearm", "elbow", "wrist"))
+ARMS = (
+    ("hand", "wrist", "hand"),
+    ("upper_arm", "shoulder", "elbow"),
+    ("forearm", "elbow", "wrist"),
+)
 
 
 @dataclass(frozen=True, eq=False)
@@ -25,17 +30,12 @@ class Drawing:
     """A figure as the camera sees it, whole, even where it lies outside the image.
 
     Attributes:
-        picture: cut-out (h, w, 4) uint8; its alpha is the silhouette.
-        column, row: the picture's corner in the image, px.
+        piece: its picture and place; the picture's alpha is the silhouette.
         box: the silhouette's tight box, px.
-        depth: m in front of the camera.
     """
 
-    picture: np.ndarray
-    column: int
-    row: int
+    piece: Piece
     box: Box
-    depth: float
 
 
 class Figure:
@@ -62,12 +62,12 @@ class Figure:
     def draw(self, t: float, camera: CameraState, lens: Lens) -> Drawing | None:
         """The figure at a time, s, or None where it is not in front of the camera."""
         body, forward = self.body(t)
-        seen = {name: project(point, camera, lens) for name, point in body.items()}
-        depth = float(seen["pelvis"][2])
-        if min(point[2] for point in seen.values()) < NEAR:
+        places = project(np.array(list(body.values())), camera, lens)
+        if places[:, 2].min() < NEAR:
             return None
+        seen = dict(zip(body, places, strict=True))
+        depth = float(seen["pelvis"][2])
         fine = 2 if lens.focal / depth < 400 else 1  # pixels are drawn at twice the size
-        places = np.array(list(seen.values()))
         reach = 0.2 * lens.focal / depth + 2
         column, row = (int(np.floor(v - reach)) for v in places[:, :2].min(axis=0))
         right, bottom = (int(np.ceil(v + reach)) for v in places[:, :2].max(axis=0))
@@ -78,7 +78,14 @@ class Figure:
         if fine > 1:
             size = (right - column, bottom - row)
             canvas = cv2.resize(canvas, size, interpolation=cv2.INTER_AREA)
-        return Drawing(canvas, column, row, box, depth)
+        return Drawing(Piece(canvas, column, row, depth), box)
+
+    def in_image(self, t: float, camera: CameraState, lens: Lens) -> bool:
+        """Whether the image can show any of the figure at a time, s."""
+        x, z, *_ = self._path.at(t)
+        column, _, depth = project(np.array([x, 0.0, z]), camera, lens)
+        reach = 1.2 * lens.focal / max(depth, NEAR)
+        return depth > NEAR and -reach < column < lens.width + reach
 
     def _draw_parts(
         self, canvas: np.ndarray, put: dict[str, tuple[np.ndarray, float]], forward: np.ndarray,
@@ -95,9 +102,7 @@ class Figure:
         def tube(part: str, upper: str, lower: str, shift: np.ndarray | float = 0.0) -> None:
             (start, depth_0), (end, depth_1) = put[upper], put[lower]
             scale = focal / ((depth_0 + depth_1) / 2)
-            self._cut_for(part, scale).draw(
-                canvas, start + shift, end + shift, scale, view, light
-            )
+            self._cut_for(part, scale).draw(canvas, start + shift, end + shift, scale, view, light)
 
         def pack() -> None:
             (start, depth), (end, _) = put["neck"], put["pelvis"]
@@ -139,21 +144,18 @@ class Figure:
             self._cut[part, grain] = _Tube(self._outfit.parts[part], grain)
         return self._cut[part, grain]
 
-    def shadow(self, t: float, camera: CameraState, lens: Lens) -> list[np.ndarray]:
-        """The shadow's limbs on the ground: (n, 3) px, px and thickness in px each."""
+    def shadow(self, t: float, camera: CameraState, lens: Lens) -> np.ndarray:
+        """The shadow's limbs on the ground: (limbs, 2 ends, column and row and thickness) px."""
         body, _ = self.body(t)
         limbs = [("pelvis", "neck", 0.3), ("neck", "head", 0.17), ("head", "head", 0.2)]
         for side in ("left", "right"):
             limbs += [(f"{side}_{a}", f"{side}_{b}", 0.11) for _, a, b in (*LIMBS, *ARMS)]
-        lines = []
-        for upper, lower, wide in limbs:
-            points = shadow_of(np.array([body[upper], body[lower]]))
-            seen = project(points, camera, lens)
-            if seen[:, 2].min() < NEAR:
-                continue
-            thick = np.full((2, 1), wide * lens.focal / seen[:, 2].mean())
-            lines.append(np.hstack([seen[:, :2], thick]))
-        return lines
+        ends = np.array([(body[upper], body[lower]) for upper, lower, _ in limbs])
+        seen = project(shadow_of(ends), camera, lens)
+        if seen[..., 2].min() < NEAR:
+            return seen[:0]
+        wide = np.array([wide for *_, wide in limbs])[:, None]
+        return np.dstack([seen[..., :2], wide * lens.focal / seen[..., 2]])
 
 
 def _light(to_eye: np.ndarray) -> tuple[float, float]:
@@ -165,8 +167,8 @@ def _light(to_eye: np.ndarray) -> tuple[float, float]:
 
 
 def _tight_box(alpha: np.ndarray, column: int, row: int, fine: int) -> Box:
-    inside = alpha >= 128
-    columns, rows = np.flatnonzero(inside.any(axis=0)), np.flatnonzero(inside.any(axis=1))
+    columns = np.flatnonzero(cv2.reduce(alpha, 0, cv2.REDUCE_MAX)[0] >= 128)
+    rows = np.flatnonzero(cv2.reduce(alpha, 1, cv2.REDUCE_MAX)[:, 0] >= 128)
     return Box(
         column + columns[0] / fine, row + rows[0] / fine,
         (columns[-1] + 1 - columns[0]) / fine, (rows[-1] + 1 - rows[0]) / fine,
@@ -181,15 +183,17 @@ class _Tube:
         rows = max(int(0.55 * grain), 6)
         columns = max(int(max(part.front, part.side) * grain), 5)
         texture = cv2.resize(part.texture, (TURN, rows), interpolation=cv2.INTER_AREA)
-        self._texture = np.clip(texture, 0, 255)
+        self._texture = np.clip(texture, 0, 255).astype(np.float32)
         down = np.linspace(0, len(part.outline) - 1, rows)
         outline = np.interp(down, np.arange(len(part.outline)), part.outline)[:, None]
         across = ((np.arange(columns) + 0.5) / columns * 2 - 1)[None, :] * 1.06
         self._alpha = np.clip((outline - np.abs(across)) * columns / 2 + 0.5, 0, 1)[..., None]
-        self._sin = np.clip(across / np.maximum(outline, 1e-3), -1, 1)
+        self._alpha = self._alpha.astype(np.float32)
+        self._sin = np.clip(across / np.maximum(outline, 1e-3), -1, 1).astype(np.float32)
         self._cos = np.sqrt(1 - self._sin**2)
         self._angle = np.arcsin(self._sin)
         self._rows = np.arange(rows)[:, None]
+        self._latest: tuple[object, np.ndarray] = (None, np.empty(0))
 
     def draw(
         self, canvas: np.ndarray, start: np.ndarray, end: np.ndarray, scale: float, view: float,
@@ -218,8 +222,15 @@ class _Tube:
         )  # fmt: skip
 
     def _lit(self, view: float, light: tuple[float, float]) -> np.ndarray:
+        """The part turned and lit; left and right limbs, and frames alike, share one picture."""
+        view, light = round(view / VIEW_STEP) * VIEW_STEP, (round(light[0], 2), round(light[1], 2))
+        if (view, light) != self._latest[0]:
+            self._latest = (view, light), self._light_up(view, light)
+        return self._latest[1]
+
+    def _light_up(self, view: float, light: tuple[float, float]) -> np.ndarray:
         column = ((view + self._angle) / (2 * np.pi) * TURN).astype(int) % TURN
         shade = 0.55 + 0.6 * np.maximum(self._sin * light[0] + self._cos * light[1], 0)
         shade *= 0.72 + 0.28 * self._cos
         colour = np.minimum(self._texture[self._rows, column] * shade[..., None], 255)
-        return np.dstack([colour * self._alpha, self._alpha * 255]).astype(np.uint8)
+        return np.concatenate([colour * self._alpha, self._alpha * 255], axis=2).astype(np.uint8)

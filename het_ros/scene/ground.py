@@ -31,7 +31,7 @@ class Ground:
         base = np.clip(texture, 0, 255).astype(np.uint8)
         self._blurred = [base, *(_flatten(base, near) for near in BANDS[1:-1])]
         fine = fractal(rng, DETAIL_SIDE, DETAIL_SIDE, 6, 2)
-        self._detail = np.clip(128 + 9 * fine, 0, 255).astype(np.uint8)
+        self._detail = np.clip(128 + 6 * fine, 0, 255).astype(np.uint8)
 
     def draw(self, image: np.ndarray, camera: CameraState, lens: Lens) -> None:
         """Fill the image below the horizon, in place."""
@@ -87,10 +87,10 @@ def _rows(z_from: float, z_to: float) -> slice:
 
 def _paint(rng: np.random.Generator) -> np.ndarray:
     width, height = int((RIGHT - LEFT) * GRAIN), int((FRONT - BACK) * GRAIN)
-    broad = fractal(rng, height, width, 4 * GRAIN, 5)
+    broad = _broad(rng, height, width, 4 * GRAIN)
     fine = fractal(rng, height, width, 5, 3)
     texture = tinted((62, 118, 98), 1 + 0.13 * broad + 0.2 * fine)  # lawn
-    dry = np.clip(fractal(rng, height, width, 2 * GRAIN, 4) * 0.5, 0, 1)[..., None]
+    dry = np.clip(_broad(rng, height, width, 2 * GRAIN) * 0.5, 0, 1)[..., None]
     texture = texture * (1 - 0.5 * dry) + np.array([88, 150, 158], np.float32) * 0.5 * dry
     strips = [
         (PROMENADE, VERGE, (150, 166, 176), (0.6, 0.9), 0.05, 1.0),
@@ -99,7 +99,7 @@ def _paint(rng: np.random.Generator) -> np.ndarray:
     ]
     for begin, end, colour, slab, spread, stain in strips:
         rows = _rows(begin, end)
-        light = 1 + 0.05 * stain * broad[rows] + 0.05 * fine[rows]
+        light = 1 + 0.05 * stain * broad[rows] + 0.035 * fine[rows]
         if slab is not None:
             size = (int(slab[0] * GRAIN), int(slab[1] * GRAIN))
             light *= blocks(rng, *light.shape, size, 1, spread)
@@ -107,7 +107,7 @@ def _paint(rng: np.random.Generator) -> np.ndarray:
     for kerb in (PROMENADE, VERGE, ROAD, PAVEMENT):
         rows = _rows(kerb - 0.08, kerb + 0.08)
         light = 1 + 0.04 * fine[rows]
-        light[:, :: GRAIN] *= 0.7
+        light[:, ::GRAIN] *= 0.7
         texture[rows] = tinted((178, 184, 188), light)
     middle = _rows(13.6, 13.75)
     dashes = (np.arange(width) // GRAIN) % 6 < 3
@@ -115,6 +115,12 @@ def _paint(rng: np.random.Generator) -> np.ndarray:
     _scatter_leaves(rng, texture)
     _fade_edges(texture)
     return texture
+
+
+def _broad(rng: np.random.Generator, height: int, width: int, cell: float) -> np.ndarray:
+    """Coarse noise (height, width), made small and grown."""
+    small = fractal(rng, height // 4, width // 4, cell / 4, 4)
+    return cv2.resize(small, (width, height), interpolation=cv2.INTER_LINEAR)
 
 
 def _fade_edges(texture: np.ndarray) -> None:
@@ -131,7 +137,7 @@ def _fade_edges(texture: np.ndarray) -> None:
 
 def _scatter_leaves(rng: np.random.Generator, texture: np.ndarray) -> None:
     colours = np.array([(40, 90, 170), (50, 140, 200), (45, 70, 120), (60, 130, 140)], float)
-    for _ in range(2600):
+    for _ in range(1700):
         x = int(rng.uniform(0, texture.shape[1]))
         y = int((FRONT - rng.uniform(0.5, ROAD)) * GRAIN)
         axes = (int(rng.integers(1, 3)), 1)

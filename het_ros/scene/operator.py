@@ -18,9 +18,7 @@ class Operator:
         shake: strength, 1 is a robot on paving, 0 a tripod.
     """
 
-    def __init__(
-        self, rng: np.random.Generator, story: Story, target: Path, shake: float
-    ) -> None:
+    def __init__(self, rng: np.random.Generator, story: Story, target: Path, shake: float) -> None:
         self._dolly = Path(story.camera, rounding=2.0)
         self._t = np.arange(-1.0, max(story.seconds, target.end) + 1.0, STEP)
         sway = 0.05 * np.sin(2 * np.pi * self._t / rng.uniform(6, 9) + rng.uniform(0, 6))

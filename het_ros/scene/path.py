@@ -15,7 +15,9 @@ def smooth(samples: np.ndarray, seconds: float) -> np.ndarray:
     window = np.hanning(size + 2)[1:-1]
     window /= window.sum()
     pad = size // 2
-    padded = np.concatenate([np.repeat(samples[:1], pad, 0), samples, np.repeat(samples[-1:], pad, 0)])
+    padded = np.concatenate(
+        [np.repeat(samples[:1], pad, 0), samples, np.repeat(samples[-1:], pad, 0)]
+    )
     flat = padded.reshape(len(padded), -1)
     columns = [np.convolve(column, window, mode="valid") for column in flat.T]
     return np.stack(columns, axis=1).reshape(samples.shape)
@@ -28,7 +30,9 @@ class Path:
         ValueError: fewer than one waypoint, or times that do not grow.
     """
 
-    def __init__(self, waypoints: Sequence[tuple[float, float, float]], rounding: float = 0.8) -> None:
+    def __init__(
+        self, waypoints: Sequence[tuple[float, float, float]], rounding: float = 0.8
+    ) -> None:
         points = np.asarray(waypoints, float)
         if points.ndim != 2 or len(points) == 0 or (np.diff(points[:, 0]) <= 0).any():
             raise ValueError(f"waypoints are (t, x, z) with growing times, not {waypoints}")

@@ -5,10 +5,28 @@ A cut-out is (h, w, 4) uint8: BGR already multiplied by its alpha, then alpha.
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import cv2
 import numpy as np
 
 Window = tuple[slice, slice]
+
+
+@dataclass(frozen=True, eq=False)
+class Piece:
+    """A cut-out with its place.
+
+    Attributes:
+        picture: (h, w, 4) uint8.
+        column, row: its corner in the image, px; it may lie outside.
+        depth: its distance in front of the camera, m: what is nearer hides it.
+    """
+
+    picture: np.ndarray
+    column: int
+    row: int
+    depth: float
 
 
 def cut_out(bgr: np.ndarray, alpha: np.ndarray) -> np.ndarray:
@@ -28,20 +46,16 @@ def pyramid(picture: np.ndarray, smallest: int = 4) -> list[np.ndarray]:
     return levels
 
 
-def lay(image: np.ndarray, piece: np.ndarray, column: int, row: int) -> Window | None:
-    """Lay a cut-out over an image, in place, its corner at (column, row) px.
-
-    Returns the image's window that it covers, or None when it lies wholly outside.
-    """
+def lay(image: np.ndarray, piece: np.ndarray, column: int, row: int) -> None:
+    """Lay a cut-out over an image, in place, its corner at (column, row) px."""
     window, inner = overlap(image.shape, piece.shape, column, row)
     if window is None:
-        return None
+        return
     piece = piece[inner]
     through = cv2.cvtColor(cv2.bitwise_not(piece[..., 3]), cv2.COLOR_GRAY2BGR)
     beneath = cv2.multiply(image[window], through, scale=1 / 255)
     cv2.add(beneath, np.ascontiguousarray(piece[..., :3]), dst=beneath)
     image[window] = beneath
-    return window
 
 
 def lay_over(canvas: np.ndarray, piece: np.ndarray, column: int, row: int) -> None:
@@ -73,8 +87,12 @@ def warp_window(
     """A window of the image that a plane's picture is warped into.
 
     Args:
+        picture: (h, w, channels) uint8; a cut-out is clear outside its edges, another goes on.
         to_image: (3, 3), picture px to image px, both counted from the corner of the first px.
-        left, top, width, height: the window, px.
+        left: first column of the window, px.
+        top: first row of the window, px.
+        width: of the window, px.
+        height: of the window, px.
     """
     half = np.array([[1, 0, 0.5], [0, 1, 0.5], [0, 0, 1.0]])
     shift = np.array([[1, 0, left + 0.5], [0, 1, top + 0.5], [0, 0, 1.0]])

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import cv2
 import numpy as np
 
-from het_ros.scene.camera import NEAR, CameraState, Lens, project
+from het_ros.scene.camera import NEAR, Lens
 from het_ros.scene.pixels import cut_out, pyramid
 from het_ros.scene.texture import fractal, tinted
 
@@ -30,13 +30,17 @@ class Placed:
     width: float
     height: float
 
-    def depth(self, camera: CameraState, lens: Lens) -> float:
-        """Distance in front of the camera, m."""
-        return float(project(np.array([self.x, 0.0, self.z]), camera, lens)[2])
+    def drawn(
+        self, column: float, row: float, depth: float, lens: Lens
+    ) -> tuple[np.ndarray, int, int] | None:
+        """The cut-out as seen with its corner's column and row, or None if it is not seen.
 
-    def drawn(self, camera: CameraState, lens: Lens) -> tuple[np.ndarray, int, int] | None:
-        """The cut-out as the camera sees it with its column and row, or None if it does not."""
-        column, row, depth = project(np.array([self.x, 0.0, self.z]), camera, lens)
+        Args:
+            column: of its foot in the image, px.
+            row: of its foot in the image, px.
+            depth: its distance, m.
+            lens: through which it is seen.
+        """
         if depth < NEAR:
             return None
         scale = lens.focal / depth
@@ -87,12 +91,14 @@ def tree(rng: np.random.Generator, tall: float = 5.0) -> np.ndarray:
         x = width / 2 + np.cos(angle) * far * crown_r * 1.12 * (0.9 + 0.2 * np.sin(3 * angle))
         y = crown_y + np.sin(angle) * far * crown_r * (0.95 + 0.12 * np.cos(5 * angle))
         lit = 0.62 - 0.28 * (y - crown_y) / crown_r - 0.16 * (x - width / 2) / crown_r
-        tone = np.clip(lit + 0.22 * (k - 0.5) + rng.normal(0, 0.1), 0.2, 1.2)
+        tone = np.clip(lit + 0.22 * (k - 0.5) + rng.normal(0, 0.1), 0.42, 1.2)
         leaf = np.array([52, 128, 98]) * tone + np.array([0, 14, 18]) * rng.normal(0, 1)
         axes = (int(rng.uniform(5, 15)), int(rng.uniform(4, 10)))
         spot = (int(x), int(y))
         turn = rng.uniform(0, 180)
-        cv2.ellipse(colour, spot, axes, turn, 0, 360, np.clip(leaf, 0, 255).tolist(), -1, cv2.LINE_AA)
+        cv2.ellipse(
+            colour, spot, axes, turn, 0, 360, np.clip(leaf, 0, 255).tolist(), -1, cv2.LINE_AA
+        )
         cv2.ellipse(alpha, spot, axes, turn, 0, 360, 1.0, -1, cv2.LINE_AA)
     colour *= (1 + 0.16 * fractal(rng, height, width, 5, 2))[..., None]
     return cut_out(colour, alpha)
@@ -102,7 +108,9 @@ def _draw_trunk(rng: np.random.Generator, colour: np.ndarray, alpha: np.ndarray)
     height, width = alpha.shape
     stem = max(int(0.034 * height), 6)
     left, top = width // 2 - stem // 2, int(0.4 * height)
-    bark = 1 + 0.2 * cv2.resize(fractal(rng, (height - top) // 4 + 1, stem, 5, 3), (stem, height - top))
+    bark = 1 + 0.2 * cv2.resize(
+        fractal(rng, (height - top) // 4 + 1, stem, 5, 3), (stem, height - top)
+    )
     colour[top:, left : left + stem] = tinted((58, 76, 98), _rounded(stem, height - top) * bark)
     alpha[top:, left : left + stem] = 1
     for side in (-1, 1):
@@ -139,7 +147,9 @@ def bush(rng: np.random.Generator, aspect: float = 1.6) -> np.ndarray:
         x = width / 2 + np.cos(angle) * far * (width / 2 - 12)
         y = height - 4 - np.sin(angle) * far * (height - 16)
         tone = np.clip(0.98 - 0.5 * y / height - 0.1 * (x / width) + rng.normal(0, 0.12), 0.2, 1.2)
-        leaf = (np.array([58, 140, 88]) if rng.random() < 0.95 else np.array([150, 120, 235])) * tone
+        leaf = (
+            np.array([58, 140, 88]) if rng.random() < 0.95 else np.array([150, 120, 235])
+        ) * tone
         axes = (int(rng.uniform(3, 8)), int(rng.uniform(2, 5)))
         turn = rng.uniform(0, 180)
         cv2.ellipse(colour, (int(x), int(y)), axes, turn, 0, 360, leaf.tolist(), -1, cv2.LINE_AA)
@@ -184,6 +194,8 @@ def _posters(rng: np.random.Generator, height: int, width: int) -> np.ndarray:
             cv2.ellipse(sheet, middle, (wide // 3, wide // 5), 25, 0, 360, ink, -1, cv2.LINE_AA)
         for k in range(4):
             y = int(height * (0.68 + 0.065 * k))
-            cv2.line(sheet, (5, y), (int(wide * rng.uniform(0.5, 0.9)), y), ink, 3 if k == 0 else 1)
+            cv2.line(
+                sheet, (5, y), (int(wide * rng.uniform(0.5, 0.9)), y), ink, 3 if k == 0 else 1
+            )
         x += wide + 2
     return strip

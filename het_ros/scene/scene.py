@@ -14,7 +14,7 @@ from het_ros.scene.config import SceneConfig
 from het_ros.scene.figure import Drawing, Figure
 from het_ros.scene.operator import Operator
 from het_ros.scene.path import Path
-from het_ros.scene.pixels import lay, overlap
+from het_ros.scene.pixels import Piece, lay, overlap
 from het_ros.scene.sensor import Sensor
 from het_ros.scene.stories import STORIES
 from het_ros.scene.street import Street
@@ -105,65 +105,79 @@ class Scene:
     def render(self, t: float, camera: CameraState | None = None, index: int = -1) -> Frame:
         """The street at a time, s, seen by that camera (by default the story's own)."""
         camera = camera or self.camera_at(t)
+        target = self._target.draw(t, camera, self.lens)
+        pieces = self._pieces(target, t, camera)
         image = np.empty((self.lens.height, self.lens.width, 3), np.uint8)
         self._street.draw_far(image, camera)
-        people = [self._target, *self._passers]
-        self._cast_shadows(image, people, t, camera)
-        target = self._target.draw(t, camera, self.lens)
-        mask = np.zeros(image.shape[:2], np.uint8)
-        for piece, column, row, is_target in self._by_depth(target, t, camera):
-            window = lay(image, piece, column, row)
-            if window is not None:
-                _, inner = overlap(mask.shape, piece.shape, column, row)
-                alpha = piece[inner][..., 3]
-                if is_target:
-                    mask[window] = alpha
-                else:
-                    mask[window] = cv2.multiply(mask[window], cv2.bitwise_not(alpha), scale=1 / 255)
-        visible = float(mask.sum(dtype=np.int64) / target.picture[..., 3].sum()) if target else 0.0
+        self._cast_shadows(image, [self._target, *self._passers], t, camera)
+        for piece in pieces:
+            lay(image, piece.picture, piece.column, piece.row)
+        mask, visible = self._seen(target, pieces)
         return Frame(
             index=index, stamp=t, image=self._sensor.expose(image, t, camera, self.brightness(t)),
-            box=target.box if target else None, visible=min(visible, 1.0),
+            box=target.box if target else None, visible=visible,
             mask=np.where(mask >= 128, np.uint8(255), np.uint8(0)), camera=camera,
         )  # fmt: skip
 
-    def _by_depth(
-        self, target: Drawing | None, t: float, camera: CameraState
-    ) -> list[tuple[np.ndarray, int, int, bool]]:
-        """All cut-outs (picture, column, row, whether the target), the farthest first."""
-        pieces = [(d, *place, False) for d, *place in self._street.things(camera)]
-        drawings = [(target, True)] + [(p.draw(t, camera, self.lens), False) for p in self._passers]
-        for drawing, is_target in drawings:
-            if drawing is not None:
-                pieces.append(
-                    (drawing.depth, drawing.picture, drawing.column, drawing.row, is_target)
-                )
-        return [tuple(rest) for _, *rest in sorted(pieces, key=lambda piece: -piece[0])]
+    def _pieces(self, target: Drawing | None, t: float, camera: CameraState) -> list[Piece]:
+        """All cut-outs that may reach into the image, the farthest first."""
+        pieces: list[Piece] = self._street.things(camera)
+        passers = [p for p in self._passers if p.in_image(t, camera, self.lens)]
+        drawings = [target, *(p.draw(t, camera, self.lens) for p in passers)]
+        pieces += [d.piece for d in drawings if d is not None]
+        return sorted(pieces, key=lambda piece: -piece.depth)
+
+    def _seen(self, target: Drawing | None, pieces: list[Piece]) -> tuple[np.ndarray, float]:
+        """Alpha (H, W) uint8 of what the image shows of the target, and its part of the whole."""
+        mask = np.zeros((self.lens.height, self.lens.width), np.uint8)
+        if target is None:
+            return mask, 0.0
+        for piece in pieces[pieces.index(target.piece) :]:
+            window, inner = overlap(mask.shape, piece.picture.shape, piece.column, piece.row)
+            if window is None:
+                continue
+            alpha = piece.picture[inner][..., 3]
+            if piece is target.piece:
+                mask[window] = alpha
+            else:
+                mask[window] = cv2.multiply(mask[window], cv2.bitwise_not(alpha), scale=1 / 255)
+        whole = target.piece.picture[..., 3].sum(dtype=np.int64)
+        return mask, float(mask.sum(dtype=np.int64) / whole)
 
     def _cast_shadows(
         self, image: np.ndarray, people: list[Figure], t: float, camera: CameraState
     ) -> None:
-        lines = [line for figure in people for line in figure.shadow(t, camera, self.lens)]
-        if not lines:
-            return
-        ends = np.concatenate(lines)
-        top = int(np.clip(ends[:, 1].min() - 12, 0, self.lens.height))
-        bottom = int(np.clip(ends[:, 1].max() + 12, 0, self.lens.height))
-        left = int(np.clip(ends[:, 0].min() - 40, 0, self.lens.width))
-        right = int(np.clip(ends[:, 0].max() + 40, 0, self.lens.width))
+        for figure in people:
+            limbs = figure.shadow(t, camera, self.lens)
+            if len(limbs):
+                self._cast_shadow(image, limbs)
+
+    def _cast_shadow(self, image: np.ndarray, limbs: np.ndarray) -> None:
+        margin = limbs[..., 2].max()
+        first, last = limbs[..., :2].min(axis=(0, 1)), limbs[..., :2].max(axis=(0, 1))
+        limit = (self.lens.width, self.lens.height)
+        left, top = np.clip(np.floor(first - margin), 0, limit).astype(int)
+        right, bottom = np.clip(np.ceil(last + margin), 0, limit).astype(int)
         if right <= left or bottom <= top:
             return
         shade = np.full((bottom - top, right - left), 255, np.uint8)
-        for (x0, y0, thick), (x1, y1, _) in lines:
-            ends = [(int((x - left) * 8), int((y - top) * 8)) for x, y in ((x0, y0), (x1, y1))]
-            cv2.line(shade, *ends, 140, max(int(thick * 0.45), 1), cv2.LINE_AA, shift=3)
+        for ends in limbs:
+            start, end = ((ends[:, :2] - (left, top)) * 8).astype(int).tolist()
+            thick = ends[:, 2].mean()
+            cv2.line(shade, start, end, 140, max(int(thick * 0.45), 1), cv2.LINE_AA, shift=3)
         shade = cv2.cvtColor(cv2.GaussianBlur(shade, (0, 0), 1.2), cv2.COLOR_GRAY2BGR)
         window = image[top:bottom, left:right]
         cv2.multiply(window, shade, dst=window, scale=1 / 255)
 
     def visibility(self) -> np.ndarray:
-        """``visible`` of every frame, (frames,) float64."""
-        return np.array([frame.visible for frame in self.frames()])
+        """``visible`` of every frame, (frames,) float64, without rendering the images."""
+        seen = []
+        for index in range(len(self)):
+            t = index / self.config.rate
+            camera = self.camera_at(t)
+            target = self._target.draw(t, camera, self.lens)
+            seen.append(self._seen(target, self._pieces(target, t, camera))[1])
+        return np.array(seen)
 
     def hidden_ranges(self, below: float = 0.02) -> list[tuple[int, int]]:
         """Ranges [first, last) of the frames that show less than that part of the target."""

@@ -8,8 +8,11 @@ import numpy as np
 from het_ros.scene.camera import CameraState, Lens
 
 
+SPOT = 0.62  # px: deviation of the spot that a lens and a Bayer pattern make of a point
+
+
 class Sensor:
-    """Exposure, vignette, motion blur and noise.
+    """Softness, exposure, vignette, motion blur and noise.
 
     Args:
         noise: standard deviation at mid grey, grey levels.
@@ -44,12 +47,13 @@ class Sensor:
         return cv2.add(image, grains, dtype=cv2.CV_8U)
 
     def _smear(self, image: np.ndarray, camera: CameraState) -> np.ndarray:
+        """What lens and shutter spread: a soft spot, drawn out while the camera pans."""
+        spot = cv2.getGaussianKernel(5, SPOT)
         pixels = abs(camera.yaw_rate) * self._exposure * self._lens.focal
-        if pixels < 0.7:
-            return image
         reach = int(np.ceil(pixels / 2))
-        kernel = np.clip(pixels / 2 + 0.5 - np.abs(np.arange(-reach, reach + 1)), 0, 1)
-        return cv2.filter2D(image, -1, (kernel / kernel.sum())[None, :])
+        trail = np.clip(pixels / 2 + 0.5 - np.abs(np.arange(-reach, reach + 1)), 0, 1)
+        across = np.convolve(spot[:, 0], trail / trail.sum())
+        return cv2.sepFilter2D(image, -1, across, spot)
 
 
 def _response(brightness: float) -> np.ndarray:

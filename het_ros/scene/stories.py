@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 
@@ -64,12 +65,13 @@ class Story:
 
 
 # Width of a walking silhouette that must be behind a column, m: the legs are what shows last.
-STEP_WIDTH = 0.86
+STEP_WIDTH = 0.66
 
 
 def _walk(seconds: float, speed: float, z: float, start: float) -> tuple[Waypoint, ...]:
-    """Along the promenade from x = start, to the right."""
-    return (0.0, start, z), (seconds, start + speed * seconds, z)
+    """Along the promenade to the right, x = start at 0 s; already walking then, and at the end."""
+    lead = 1.5  # s
+    return (-lead, start - lead * speed, z), (seconds + lead, start + speed * (seconds + lead), z)
 
 
 def _column_for(hidden: float, speed: float, x: float, z: float, at_z: float) -> Column:
@@ -92,9 +94,7 @@ def _hidden(rng: np.random.Generator, seconds: float) -> Story:
     length = 8.0 + seconds
     start = -0.5 * speed * length
     column = _column_for(seconds, speed, rng.uniform(-0.3, 0.3), 3.4, z)
-    return Story(
-        length, _walk(length, speed, z, start), columns=(column,), columns_hide=seconds
-    )
+    return Story(length, _walk(length, speed, z, start), columns=(column,), columns_hide=seconds)
 
 
 def hidden_500ms(rng: np.random.Generator) -> Story:
@@ -116,7 +116,7 @@ def leaves_and_returns(rng: np.random.Generator) -> Story:
     """The camera does not pan: the target walks out of the image, turns and comes back."""
     z = rng.uniform(5.2, 6.2)
     out = 0.6 * z + 1.2
-    path = ((0.0, -0.4, z), (4.2, out, z), (5.2, out + 0.2, z + 0.4), (10.0, -0.6, z + 0.3))
+    path = ((-1.5, -2.2, z), (4.2, out, z), (5.2, out + 0.2, z + 0.4), (10.0, -0.6, z + 0.3))
     return Story(10.0, path, follow=0.0)
 
 
@@ -129,17 +129,19 @@ def lookalike_crosses(rng: np.random.Generator) -> Story:
 
 
 def lookalike_at_column(rng: np.random.Generator) -> Story:
-    """The target stays behind a column while somebody in the same clothes walks out of it.
+    """Two in the same clothes go behind the column from either side and come out again.
 
-    The target turns round behind the column and comes out again where it went in.
+    They meet where nobody sees them; only the way they walk tells which of the two comes out
+    on the right and is the target.
     """
-    z = rng.uniform(5.8, 6.2)
-    column = _column_for(1.6, 1.2, 0.0, 3.4, z)
-    target = ((0.0, -5.0, z), (4.2, 0.0, z), (5.4, 0.1, z), (9.6, -5.0, z))
-    other = ((0.0, -1.0, z + 1.0), (0.1, 6.2, z + 1.0), (4.9, 0.5, z + 1.0), (10.0, 6.2, z + 1.0))
+    speed, z = rng.uniform(1.1, 1.3), rng.uniform(5.6, 6.2)
+    column = _column_for(1.0, speed, 0.0, 3.4, z)
+    late, length = rng.uniform(-0.35, 0.35), 9.0
+    reach = length / 2 * speed
+    other = ((late, 1.15 * reach, z + 0.9), (length + late, -1.15 * reach, z + 0.9))
     return Story(
-        10.0, target, (Passer(other[1:], alike=True),), (column,), columns_hide=1.6,
-        camera=((0.0, 0.0, 0.0),),
+        length, _walk(length, speed, z, -reach), (Passer(other, alike=True),), (column,),
+        columns_hide=1.0,
     )  # fmt: skip
 
 
@@ -153,7 +155,7 @@ def light_change(rng: np.random.Generator) -> Story:
 def approaching(rng: np.random.Generator) -> Story:
     """The target comes from 8 m to 3 m, then turns and goes away: its size grows 2.5 times."""
     x = rng.uniform(-0.6, 0.6)
-    path = ((0.0, x + 2.6, 8.0), (4.8, x - 0.4, 3.2), (5.8, x - 1.2, 3.3), (10.0, x - 2.4, 7.6))
+    path = ((-1.0, x + 3.2, 9.0), (4.8, x - 0.4, 3.2), (5.8, x - 1.2, 3.3), (10.0, x - 2.4, 7.6))
     return Story(10.0, path, follow=0.8)
 
 
@@ -161,14 +163,20 @@ def follow_walk(rng: np.random.Generator) -> Story:
     """All of it in 22 s: a column, somebody who crosses, a cloud, near and far."""
     target = (
         (0.0, -5.8, 6.3), (8.2, 3.6, 6.3), (11.6, 6.0, 3.9), (15.2, 9.6, 4.2), (18.4, 12.4, 6.6),
-        (22.0, 16.0, 7.3),
+        (23.5, 17.4, 7.5),
     )  # fmt: skip
     passers = (
         Passer(((0.0, 16.0, 7.4), (6.5, 8.5, 7.4), (12.0, 2.0, 7.2), (22.0, -10.0, 7.2))),
-        Passer(((9.0, 17.5, 4.2), (14.9, 10.2, 3.3), (18.0, 6.0, 3.2), (22.0, 1.0, 3.2)), alike=True),
+        Passer(((9.0, 17.5, 4.2), (14.9, 10.2, 3.3), (18.0, 6.0, 3.2), (22.0, 1.0, 3.2))),
     )
-    column = Column(-0.25, 3.5, (1.0 * 1.15 + STEP_WIDTH) * 3.5 / 6.3)
-    camera = ((0.0, -1.2, 0.0), (4.5, -0.6, 0.0), (9.5, 2.6, 0.0), (16.0, 8.6, 0.0), (22.0, 13.2, 0.4))
+    column = Column(-0.25, 3.5, 1.3)
+    camera = (
+        (0.0, -1.2, 0.0),
+        (4.5, -0.6, 0.0),
+        (9.5, 2.6, 0.0),
+        (16.0, 8.6, 0.0),
+        (22.0, 13.2, 0.4),
+    )
     light = ((15.8, 1.0), (17.2, 0.55), (19.4, 0.55), (20.6, 1.05))
     return Story(22.0, target, passers, (column,), camera, light=light, columns_hide=1.0)
 
@@ -177,14 +185,19 @@ def patrol(rng: np.random.Generator) -> Story:
     """A minute up and down the promenade past a column: for a robot that steers the camera."""
     z = rng.uniform(5.6, 6.2)
     xs = (-3.0, 6.0, -6.0, 6.0, -3.0)
-    target, t = [(0.0, xs[0], z)], 0.0
-    for begin, end in zip(xs, xs[1:], strict=False):
+    target, t = [(-1.5, xs[0] - 1.3, z)], 0.0
+    for begin, end in pairwise(xs):
         t += abs(end - begin) / 0.85
         target.append((t, end, z + rng.uniform(-0.5, 0.5)))
         t += 1.2
         target.append((t, end, target[-1][2] + 0.25))
     column = _column_for(0.8, 0.85, 0.9, 3.4, z)
-    other = ((12.0, 9.0, z + 1.2), (34.0, -9.0, z + 1.2), (36.0, -9.0, z + 1.3), (60.0, 9.0, z + 1.3))
+    other = (
+        (12.0, 9.0, z + 1.2),
+        (34.0, -9.0, z + 1.2),
+        (36.0, -9.0, z + 1.3),
+        (60.0, 9.0, z + 1.3),
+    )
     return Story(60.0, tuple(target), (Passer(other),), (column,), columns_hide=0.8)
 
 

@@ -8,8 +8,9 @@ import numpy as np
 
 from het_ros.scene import props
 from het_ros.scene.backdrop import Houses, Panorama
-from het_ros.scene.camera import CameraState, Lens
+from het_ros.scene.camera import CameraState, Lens, project
 from het_ros.scene.ground import Ground
+from het_ros.scene.pixels import Piece
 from het_ros.scene.stories import Column
 
 
@@ -53,11 +54,14 @@ class Street:
         self._ground.draw(image, camera, self._lens)
         self._houses.draw(image, camera, self._lens)
 
-    def things(self, camera: CameraState) -> list[tuple[float, np.ndarray, int, int]]:
-        """What stands on the ground, as seen: (depth m, cut-out, column, row) each."""
+    def things(self, camera: CameraState) -> list[Piece]:
+        """What stands on the ground, as far as the image shows it."""
         seen = []
-        for thing in self._things:
-            drawn = thing.drawn(camera, self._lens)
+        feet = project(
+            np.array([(thing.x, 0.0, thing.z) for thing in self._things]), camera, self._lens
+        )
+        for thing, (column, row, depth) in zip(self._things, feet, strict=True):
+            drawn = thing.drawn(column, row, depth, self._lens)
             if drawn is not None:
-                seen.append((thing.depth(camera, self._lens), *drawn))
+                seen.append(Piece(*drawn, float(depth)))
         return seen

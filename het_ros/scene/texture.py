@@ -12,7 +12,11 @@ def fractal(
     """Fractal noise (height, width) float32, mean 0, deviation 1.
 
     Args:
+        rng: source of the noise.
+        height: of the map, px.
+        width: of the map, px.
         cell: size of the coarsest grain, px; every octave halves it and its strength.
+        octaves: number of grains.
     """
     total = np.zeros((height, width), np.float32)
     for octave in range(octaves):
@@ -43,12 +47,19 @@ def tinted(colour: tuple[float, float, float], light: np.ndarray) -> np.ndarray:
 
 
 def blocks(
-    rng: np.random.Generator, height: int, width: int, block: tuple[int, int], joint: int,
+    rng: np.random.Generator,
+    height: int,
+    width: int,
+    block: tuple[int, int],
+    joint: int,
     spread: float,
 ) -> np.ndarray:
     """Brightness map (height, width) float32 of blocks laid in running bond, about 1.
 
     Args:
+        rng: source of the blocks' tints.
+        height: of the map, px.
+        width: of the map, px.
         block: height and width of one block, px.
         joint: thickness of the dark joints, px.
         spread: deviation of the blocks' brightness.
