@@ -73,8 +73,8 @@ def play(
         raise ValueError(f"a rate of {rate:g} makes no sense: 1 is real time, 2 twice as fast")
     use_profile()
     rclpy.init(args=list(ros_arguments), signal_handler_options=SignalHandlerOptions.NO)
+    node = rclpy.create_node("het_ros_play")
     try:
-        node = rclpy.create_node("het_ros_play")
         executor = SingleThreadedExecutor()
         executor.add_node(node)
 
@@ -89,6 +89,7 @@ def play(
             _wait_for_tracker(recorder, tracker, spin, wait, stop)
             return _play_and_record(player, recorder, spin, rate, stop)
     finally:
+        node.destroy_node()
         rclpy.try_shutdown()
 
 

@@ -51,28 +51,29 @@ def timeline(bag: BagReader, init: Box | None = None) -> Iterator[Recorded]:
         BagError: the bag has no images, or a type that is not ROS 2 Jazzy's.
     """
     topics = played_topics(bag, init)
-    check_types(bag, [topic for topic in topics if topic in bag.topics])
+    sent = False
     for recorded in bag.recorded(*(topic for topic in topics if topic in bag.topics)):
         if init and recorded.topic == INIT_BOX_TOPIC:
             continue
         yield recorded
-        if init and recorded.topic == bag.image_topic:
+        if init and not sent and recorded.topic == bag.image_topic:
             message = box_message(init, header_stamp(recorded.cdr), "")
             cdr = bytes(TYPESTORE.serialize_cdr(message, POLYGON))
             yield Recorded(INIT_BOX_TOPIC, POLYGON, recorded.time, cdr)
-            init = None
+            sent = True
 
 
 def played_topics(bag: BagReader, init: Box | None = None) -> dict[str, str]:
-    """Topic and type of all that :func:`timeline` yields.
+    """Topic and type of all that :func:`timeline` yields, each type checked.
 
     Raises:
-        BagError: the bag has no images.
+        BagError: the bag has no images, or a type that is not ROS 2 Jazzy's.
     """
     if not bag.image_topic:
         listed = ", ".join(bag.topics) or "nothing"
         raise BagError(f"{bag.path} has no images to play; it holds {listed}")
     topics = {topic: kind for topic, kind in bag.topics.items() if kind in PLAYED_TYPES}
+    check_types(bag, list(topics))
     return topics | {INIT_BOX_TOPIC: POLYGON} if init else topics
 
 

@@ -15,6 +15,7 @@ from typing import Any
 
 import rclpy
 from rclpy.context import Context
+from rclpy.exceptions import ParameterException
 from rclpy.serialization import deserialize_message, serialize_message
 from tqdm import tqdm
 
@@ -130,7 +131,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     try:
         with BagReader(options.bag, options.image_topic) as bag:
             summary, whole = replay(bag, folder, init=options.init, parameters=options.parameters)
-    except (OSError, ValueError) as error:
+    except (OSError, ValueError, ParameterException) as error:
         print(f"replay: {error}", file=sys.stderr)
         return 1
     print("\n".join([*summary.lines(), f"results   {folder.path}"]))

@@ -32,6 +32,14 @@ def crossing_bag(crossing, tmp_path_factory):
     return path
 
 
+@pytest.fixture(scope="session")
+def short_bag(crossing, tmp_path_factory):
+    """The first 16 frames, for what does not need more."""
+    path = tmp_path_factory.mktemp("bags") / "short"
+    make_bag(shortened(crossing, 16), path)
+    return path
+
+
 @pytest.fixture(autouse=True)
 def own_environment():
     """The tools choose a ROS domain and a profile for their process: take that back."""
