@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import json
+import os
 import sys
 from collections.abc import Iterator
 from pathlib import Path
@@ -66,7 +67,12 @@ def parser() -> argparse.ArgumentParser:
         "--fps", default="", help="frame rates: 30, or 30,NAME=10 (default: the data's, or 30)"
     )
     p.add_argument("--cameras", default="20,30,60", help="frames/s for realtime (20,30,60)")
-    p.add_argument("--jobs", type=_positive, default=1, help="processes on this machine (1)")
+    p.add_argument(
+        "--jobs",
+        type=_positive,
+        default=os.cpu_count() or 1,
+        help="processes on this machine (as many as it has processors); timing runs alone",
+    )
     p.add_argument("--scheduler", default="", help="Dask scheduler, tcp://host:8786")
     p.add_argument(
         "--timing",
@@ -96,8 +102,10 @@ def evaluate(options: argparse.Namespace) -> int:
         sequences=read_sequences(options.data, names, _rates(options.fps)),
         protocol=options.protocol,
         seeds=options.seeds,
-        cameras=tuple(float(c) for c in options.cameras.split(",")),
+        cameras=_cameras(options.cameras),
     )
+    if options.published:
+        published.read(options.published)  # complain now, not after hours
     cache = Cache(options.out / "cache")
     runs = carry_out_plan(plan, cache, options.jobs, options.scheduler, options.quiet)
     timing = Timing()
@@ -163,8 +171,22 @@ def _rates(text: str) -> dict[str, float]:
     rates = {}
     for part in filter(None, text.split(",")):
         name, _, value = part.rpartition("=")
-        rates[name] = float(value)
+        rates[name] = _rate(value, "--fps takes 30, or 30,NAME=10")
     return rates
+
+
+def _cameras(text: str) -> tuple[float, ...]:
+    return tuple(_rate(part, "--cameras takes rates like 20,30,60") for part in text.split(","))
+
+
+def _rate(text: str, what: str) -> float:
+    try:
+        rate = float(text)
+    except ValueError:
+        rate = 0.0
+    if not 0 < rate < float("inf"):
+        raise ValueError(f"{what}, in frames/s, not {text!r}")
+    return rate
 
 
 def _positive(text: str) -> int:

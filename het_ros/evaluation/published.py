@@ -28,14 +28,8 @@ def compare(file: Path, results: Results, excluded: Collection[str] = ()) -> dic
     Raises:
         ValueError: the file holds no such figures.
     """
-    try:
-        content = json.loads(file.read_text())
-        table = content["per_sequence_overlap"]
-    except (OSError, KeyError, TypeError, json.JSONDecodeError) as error:
-        raise ValueError(
-            f"{file} holds no published figures: JSON with per_sequence_overlap "
-            f"{{SEQUENCE: {{TRACKER: mean overlap}}}} is needed ({error})"
-        ) from None
+    content = read(file)
+    table = content["per_sequence_overlap"]
     common = [s for s in results["sequences"] if s in table and s not in excluded]
     rows: dict[str, dict[str, Any]] = {}
     for name in sorted({n for s in common for n in table[s]}):
@@ -54,3 +48,22 @@ def compare(file: Path, results: Results, excluded: Collection[str] = ()) -> dic
         "trackers": best_first,
         "sets": content.get("sets", {}),
     }
+
+
+def read(file: Path) -> dict[str, Any]:
+    """Read a file of published figures.
+
+    Raises:
+        ValueError: the file holds none.
+    """
+    try:
+        content = json.loads(file.read_text())
+        if isinstance(content["per_sequence_overlap"], dict):
+            return content
+        reason = "per_sequence_overlap is no mapping"
+    except (OSError, KeyError, TypeError, json.JSONDecodeError) as error:
+        reason = f"{type(error).__name__}: {error}"
+    raise ValueError(
+        f"{file} holds no published figures ({reason}): JSON with per_sequence_overlap "
+        "{SEQUENCE: {TRACKER: mean overlap}} is needed"
+    )

@@ -145,7 +145,7 @@ def consistency(pairs: Pairs) -> dict[str, Any]:
     for run, truth in pairs:
         boxes, covariances = run.track.boxes[1:], run.track.covariances[1:]
         on_target = np.nan_to_num(overlaps(boxes, truth[1:])) > 0
-        usable = on_target & np.isfinite(covariances).all(axis=(1, 2))
+        usable = on_target & (np.linalg.det(np.nan_to_num(covariances)) > 0)
         error = (boxes - truth[1:])[usable]
         error = error[:, :2] + error[:, 2:] / 2
         solved = np.linalg.solve(covariances[usable], error[:, :, None])[:, :, 0]
