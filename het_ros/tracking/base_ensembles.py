@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 Floats = NDArray[np.float64]
 Features = NDArray[np.floating[Any]]
+Indices = NDArray[np.intp]
 
 
 class BaseEnsembles(Protocol):
@@ -30,8 +31,8 @@ class BaseEnsembles(Protocol):
         """
         ...
 
-    def likelihood(self, scores: Floats) -> float:
-        """How target-like raw scores (Q,) are, 0..1; 0.5 where they do not say."""
+    def likelihood(self, features: Features, corners: Floats) -> float:
+        """How target-like the sub-patches at ``corners`` (Q, 2) are, 0..1."""
         ...
 
 
@@ -70,9 +71,17 @@ def detect(scores: Features, corners: Floats, radius: float) -> Detections:
 
 def scores_at(scores: Features, corners: Floats) -> Floats:
     """c_new (Q,): each sub-patch's score at the place nearest to its corner (Q, 2), working px."""
-    x = np.clip(np.rint(corners[:, 0]).astype(int), 0, scores.shape[2] - 1)
-    y = np.clip(np.rint(corners[:, 1]).astype(int), 0, scores.shape[1] - 1)
+    x, y = nearest_places(corners, scores.shape[1:])
     return np.asarray(scores[np.arange(len(scores)), y, x], np.float64)
+
+
+def nearest_places(corners: Floats, shape: tuple[int, ...]) -> tuple[Indices, Indices]:
+    """Columns (Q,) and rows (Q,) of the places nearest to corners (Q, 2), working px."""
+    rows, columns = shape
+    return (
+        np.clip(np.rint(corners[:, 0]).astype(np.intp), 0, columns - 1),
+        np.clip(np.rint(corners[:, 1]).astype(np.intp), 0, rows - 1),
+    )
 
 
 def squared_distances(corners: Floats, shape: tuple[int, ...]) -> Floats:
@@ -154,11 +163,11 @@ class NaiveBayes:
         flat = features.reshape(len(features), -1)
         scores = quadratic.astype(flat.dtype) @ self._squared(flat)
         scores += linear.astype(flat.dtype) @ flat
-        scores += constant[:, None].astype(flat.dtype)
+        scores += constant.sum(axis=1, keepdims=True).astype(flat.dtype)
         return scores.reshape(-1, *features.shape[1:])
 
     def coefficients(self) -> tuple[Floats, Floats, Floats]:
-        """a, b (Q, m) and the sum c (Q,) of f(l_i) = a l_i^2 + b l_i + c_i (eq. classifier).
+        """a, b and c (Q, m) of f(l_i) = a_i l_i^2 + b_i l_i + c_i (eq. classifier).
 
         The classes' priors are equal, as in the paper, and drop out.
         """
@@ -172,7 +181,7 @@ class NaiveBayes:
         constant = 0.5 * (
             zero.mean**2 / variance0 - one.mean**2 / variance1 + np.log(variance0 / variance1)
         )
-        return quadratic, linear, constant.sum(axis=1)
+        return quadratic, linear, constant
 
     def learn(self, features: Features, corners: Floats, chosen: NDArray[np.bool_]) -> None:
         """Update the Gaussians of the ``chosen`` sub-patches; the first call sets them outright.
@@ -189,16 +198,22 @@ class NaiveBayes:
         self._positive.blend(positive, self._learning_rate, chosen)
         self._negative.blend(negative, self._learning_rate, chosen)
 
-    def likelihood(self, scores: Floats) -> float:
-        """Logistic function of the mean log ratio of a single weak classifier.
+    def likelihood(self, features: Features, corners: Floats) -> float:
+        """Mean of p(y = 1 | l_i) over all weak classifiers of all sub-patches.
 
-        The sum over all weak classifiers overstates what is known, as if the features were
-        independent, and would always come out as 0 or 1.
+        The paper has no confidence. The strong classifiers' scores would make a poor one: they
+        add log ratios as if the features were independent, and under a change of light a few
+        features that fit neither class outweigh all others. Here each has one bounded vote.
+
+        Args:
+            features: (m, rows, columns), standardised.
+            corners: (Q, 2) of the sub-patches, working px.
         """
-        if self._positive is None:
-            return 0.5
-        mean = float(scores.mean()) / self._positive.mean.shape[1]
-        return float(1 / (1 + np.exp(-np.clip(mean, -50, 50))))
+        quadratic, linear, constant = self.coefficients()
+        x, y = nearest_places(corners, features.shape[1:])
+        values = features[:, y, x].T
+        log_ratios = quadratic * values**2 + linear * values + constant
+        return float((1 / (1 + np.exp(-np.clip(log_ratios, -50, 50)))).mean())
 
     def _class_gaussians(self, features: Features, corners: Floats) -> tuple[Gaussians, Gaussians]:
         """This frame's positive and negative samples of each sub-patch, as Gaussians.

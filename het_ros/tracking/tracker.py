@@ -172,9 +172,10 @@ class _Target:
             return self.estimate(0.0, State.LOST)
         corners = self._sub_patches.corners(self._corner_in(window))
         new_scores = scores_at(scores, corners)
+        likelihood = self._ensembles.likelihood(features, corners)
         self._ensembles.learn(features, corners, to_be_updated(new_scores))
         patches = self._patches(window, found, omega)
-        return self.estimate(self._ensembles.likelihood(new_scores), State.TRACKING, patches)
+        return self.estimate(likelihood, State.TRACKING, patches)
 
     @property
     def box(self) -> Box:

@@ -137,6 +137,16 @@ class BaseEnsemble:
             for classifier, value in zip(self.classifiers, values, strict=True)
         )
 
+    def vote(self, values):
+        """Mean of the weak classifiers' p(y = 1 | l_i)."""
+        return mean(
+            [
+                1
+                / (1 + math.exp(-max(classifier.log_ratio(value, self.config.sigma_floor), -600)))
+                for classifier, value in zip(self.classifiers, values, strict=True)
+            ]
+        )
+
     def detect(self, features, corner):
         """Best place within beta (eq. classification), the nearest of equals."""
         places = [
@@ -271,6 +281,12 @@ class Tracker:
             ensemble.score(self.features[round(x), round(y)])
             for ensemble, (x, y) in zip(self.ensembles, corners, strict=True)
         ]
+        self.likelihood = mean(
+            [
+                ensemble.vote(self.features[round(x), round(y)])
+                for ensemble, (x, y) in zip(self.ensembles, corners, strict=True)
+            ]
+        )
         self.chosen = selected(new)
         for ensemble, corner, chosen in zip(self.ensembles, corners, self.chosen, strict=True):
             if chosen:

@@ -90,6 +90,7 @@ def assert_same_track(images, box, config, seen):
         slow.update(image, DT)
         assert_same_frame(slow, seen)
         np.testing.assert_allclose(estimate.box.centre, slow.motion.x[:2], rtol=RELATIVE)
+        assert estimate.score == pytest.approx(slow.likelihood, rel=RELATIVE)
         np.testing.assert_allclose(estimate.velocity, slow.motion.x[2:], rtol=1e-5, atol=1e-6)
         np.testing.assert_allclose(estimate.covariance, slow.motion.p, rtol=1e-5, atol=1e-9)
 

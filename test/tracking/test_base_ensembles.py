@@ -75,7 +75,7 @@ def test_learns_to_tell_the_target_from_its_surroundings():
     bayes.learn(features, np.array([[15.0, 15], [15, 15]]), EVERYONE)
     scores = bayes.score_maps(features)
     assert scores[0, 15, 15] > 0 > scores[0, 2, 2]
-    likely, unlikely = (bayes.likelihood(scores[:, i, i]) for i in (15, 2))
+    likely, unlikely = (bayes.likelihood(features, np.full((2, 2), i)) for i in (15.0, 2.0))
     assert 0 <= unlikely < 0.5 < likely <= 1
 
 
