@@ -67,10 +67,16 @@ class Graph:
 
     def spin_until(self, happened, what: str = "what the test waits for") -> None:
         """Spin until ``happened()`` is true; fail when it does not happen at all."""
-        end = time.monotonic() + PATIENCE
+        assert self.spins_until(happened, PATIENCE), f"did not happen: {what}"
+
+    def spins_until(self, happened, patience: float) -> bool:
+        """Spin until ``happened()`` is true or for ``patience`` s; whether it happened."""
+        end = time.monotonic() + patience
         while not happened():
-            assert time.monotonic() < end, f"did not happen: {what}"
+            if time.monotonic() >= end:
+                return False
             self.executor.spin_once(timeout_sec=0.02)
+        return True
 
     def settle(self, rounds: int = 5) -> None:
         """Let everything that is on its way arrive."""

@@ -88,6 +88,18 @@ class Camera(Node):
             for topic, kind in OUTPUTS.items()
         ]
 
+    def show(self, graph, image) -> None:
+        """Publish an image until its status comes: a best-effort image may get lost on the way."""
+        answered = len(self.got["status"])
+        header = image.header
+        for _ in range(20):
+            self.images.publish(image)
+            if graph.spins_until(
+                lambda: any(s.header == header for s in self.got["status"][answered:]), 3
+            ):
+                return
+        raise AssertionError(f"no status for the image of {header.stamp}")
+
     def connected(self) -> bool:
         """Whether the tracker hears this camera and this camera hears the tracker."""
         return (
