@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 Image = NDArray[np.uint8]
 Colour = tuple[int, int, int]
 TRUTH: Colour = (255, 255, 255)
+LINE = 18  # height of a line of text, px
 
 # Ten colours that stay apart for most eyes, R, G, B; the first is for the tracker of interest.
 _PALETTE = [
@@ -31,23 +32,28 @@ def draw_boxes(
     truth: NDArray[np.float64] | None = None,
     scale: float = 1.0,
 ) -> Image:
-    """A copy of ``image``, (H, W, 3) BGR, enlarged by ``scale``, with boxes x, y, w, h drawn."""
+    """A copy of ``image``, (H, W, 3) BGR, enlarged by ``scale``, with boxes x, y, w, h drawn.
+
+    The first box lies on top of the others.
+    """
     canvas = cv2.resize(image, None, fx=scale, fy=scale, interpolation=cv2.INTER_LINEAR)
     if truth is not None:
         _rectangle(canvas, truth * scale, TRUTH, 3)
         _rectangle(canvas, truth * scale, (0, 0, 0), 1)
-    for name, box in boxes.items():
+    for name, box in reversed(boxes.items()):
         _rectangle(canvas, box * scale, palette[name], 2)
     return canvas
 
 
 def draw_label(image: Image, text: str, line: int = 0, colour: Colour = TRUTH) -> None:
-    """Write ``text`` on the given line from the top left, in place, readable on anything."""
-    place = (6, 18 + 18 * line)
-    bgr = colour[::-1]
-    cv2.putText(image, text, place, cv2.FONT_HERSHEY_SIMPLEX, 0.45, (0, 0, 0), 3, cv2.LINE_AA)
-    light = tuple(min(255, value + 60) for value in bgr)
-    cv2.putText(image, text, place, cv2.FONT_HERSHEY_SIMPLEX, 0.45, light, 1, cv2.LINE_AA)
+    """Write ``text`` on the given line from the top left, in place, on a dark ground."""
+    font, size = cv2.FONT_HERSHEY_SIMPLEX, 0.45
+    (width, _), _ = cv2.getTextSize(text, font, size, 1)
+    top = LINE * line
+    ground = image[top : top + LINE, : width + 10]
+    ground[:] = ground // 4
+    light = tuple(min(255, value + 70) for value in colour[::-1])
+    cv2.putText(image, text, (5, top + LINE - 5), font, size, light, 1, cv2.LINE_AA)
 
 
 def _rectangle(image: Image, box: NDArray[np.float64], colour: Colour, thickness: int) -> None:

@@ -112,6 +112,7 @@ def test_what_was_run_is_not_run_again(two, tmp_path, monkeypatch):
     assert len(ran) == 2
 
 
+@pytest.mark.filterwarnings("ignore:.*tasks which were still being processed")
 def test_an_interrupted_run_goes_on_where_it_stopped(two, tmp_path, monkeypatch):
     cache = Cache(tmp_path / "c")
     plan = Plan([JITTER], two, seeds=3)
