@@ -14,10 +14,12 @@ IMAGE_TOPIC = "/image"
 COMPRESSED_TOPIC = "/image/compressed"
 INIT_BOX_TOPIC = "/tracker/init_box"
 TRUTH_BOX_TOPIC = "/ground_truth/box"
+VISIBILITY_TOPIC = "/ground_truth/visibility"  # DiagnosticArray with the value "visible", 0..1
 
 IMAGE = "sensor_msgs/msg/Image"
 COMPRESSED_IMAGE = "sensor_msgs/msg/CompressedImage"
 POLYGON = "geometry_msgs/msg/PolygonStamped"
+DIAGNOSTICS = "diagnostic_msgs/msg/DiagnosticArray"
 
 _TYPES = TYPESTORE.types
 

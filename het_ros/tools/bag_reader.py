@@ -12,11 +12,14 @@ from numpy.typing import NDArray
 from rosbags.highlevel import AnyReader, AnyReaderError
 
 from het_ros.ros.images import decode, to_array
+from het_ros.ros.status import status_values
 from het_ros.tools.bag_messages import (
     COMPRESSED_IMAGE,
+    DIAGNOSTICS,
     IMAGE,
     POLYGON,
     TRUTH_BOX_TOPIC,
+    VISIBILITY_TOPIC,
     box_of,
     stamp_of,
 )
@@ -139,6 +142,13 @@ class BagReader:
         if self.topics.get(TRUTH_BOX_TOPIC) != POLYGON:
             return {}
         return {stamp_of(m): box_of(m) for _, m in self.messages(TRUTH_BOX_TOPIC)}
+
+    def visibility(self) -> dict[int, float]:
+        """Part of the target that can be seen, 0..1, by header stamp; empty if not recorded."""
+        if self.topics.get(VISIBILITY_TOPIC) != DIAGNOSTICS:
+            return {}
+        messages = self.messages(VISIBILITY_TOPIC)
+        return {stamp_of(m): float(status_values(m)["visible"]) for _, m in messages}
 
 
 def header_stamp(cdr: bytes) -> int:

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from het_ros.ros.status import status_values
-from het_ros.tools.bag_messages import POLYGON, box_of, stamp_of
+from het_ros.tools.bag_messages import DIAGNOSTICS, POLYGON, box_of, stamp_of
 from het_ros.tools.bag_reader import BagReader
 from het_ros.tools.results import Row
 from het_ros.tracking.box import Box
@@ -21,7 +21,7 @@ OUTPUT_TYPES = {  # by the name under the node's own
     "box": POLYGON,
     "pose": "geometry_msgs/msg/PoseWithCovarianceStamped",
     "velocity": "geometry_msgs/msg/TwistWithCovarianceStamped",
-    "status": "diagnostic_msgs/msg/DiagnosticArray",
+    "status": DIAGNOSTICS,
     "bearing": "geometry_msgs/msg/Vector3Stamped",
     "target_pose": "geometry_msgs/msg/PoseStamped",
 }

@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from het_ros.tools.drawing import STATE_COLOURS
 from het_ros.tools.results import Row
+from het_ros.tools.summary import Truth
 from het_ros.tracking.box import Box
 from het_ros.tracking.estimate import State
 
@@ -28,7 +29,7 @@ NAN_BOX = (np.nan,) * 4
 def plot_track(
     path: Path | str,
     rows: Sequence[Row],
-    truth: Sequence[Box | None],
+    truth: Sequence[Truth],
     strip: Sequence[tuple[int, NDArray[np.uint8]]],
     title: str,
 ) -> None:
@@ -37,12 +38,12 @@ def plot_track(
     Args:
         path: PNG to write.
         rows: n answers in the order of time.
-        truth: n boxes, None where the truth is not known.
+        truth: what is known of the n frames.
         strip: annotated frames, (H, W, 3) uint8 BGR of one size, with their index in ``rows``.
         title: text on top.
     """
     panels = [_plot_centre, _plot_speed, _plot_score]
-    if any(truth):
+    if any(true.box for true in truth):
         panels += [_plot_overlap, _plot_error]
     columns = max(-(-len(strip) // 2), 1)
     strip_rows = 2 if len(strip) > 1 else 1
@@ -126,10 +127,10 @@ def _centres(boxes: Sequence[Box | None]) -> NDArray[np.float64]:
 
 
 def _plot_centre(
-    axis: Axes, time: NDArray[np.float64], rows: Sequence[Row], truth: Sequence[Box | None]
+    axis: Axes, time: NDArray[np.float64], rows: Sequence[Row], truth: Sequence[Truth]
 ) -> None:
-    if any(truth):
-        for values, name in zip(_centres(truth).T, "xy", strict=True):
+    if any(true.box for true in truth):
+        for values, name in zip(_centres([true.box for true in truth]).T, "xy", strict=True):
             axis.plot(time, values, "k:", linewidth=1, label=f"{name}, truth")
     for values, name in zip(_centres([row.box for row in rows]).T, "xy", strict=True):
         axis.plot(time, values, linewidth=1.4, label=name)
@@ -138,7 +139,7 @@ def _plot_centre(
 
 
 def _plot_speed(
-    axis: Axes, time: NDArray[np.float64], rows: Sequence[Row], truth: Sequence[Box | None]
+    axis: Axes, time: NDArray[np.float64], rows: Sequence[Row], truth: Sequence[Truth]
 ) -> None:
     speed = [np.hypot(*row.velocity) if row.velocity else np.nan for row in rows]
     axis.plot(time, speed, "C2", linewidth=1.4)
@@ -146,19 +147,23 @@ def _plot_speed(
 
 
 def _plot_score(
-    axis: Axes, time: NDArray[np.float64], rows: Sequence[Row], truth: Sequence[Box | None]
+    axis: Axes, time: NDArray[np.float64], rows: Sequence[Row], truth: Sequence[Truth]
 ) -> None:
-    axis.plot(time, [np.nan if row.score is None else row.score for row in rows], "C3")
+    if any(true.visible < 1 for true in truth):
+        axis.plot(time, [true.visible for true in truth], "k:", linewidth=1, label="visible part")
+    scores = [np.nan if row.score is None else row.score for row in rows]
+    axis.plot(time, scores, "C3", linewidth=1.4, label="score")
+    axis.legend(loc="upper left", bbox_to_anchor=(1.0, 1.0), fontsize=8)
     axis.set_ylim(-0.03, 1.03)
     axis.set_ylabel("score")
 
 
 def _plot_overlap(
-    axis: Axes, time: NDArray[np.float64], rows: Sequence[Row], truth: Sequence[Box | None]
+    axis: Axes, time: NDArray[np.float64], rows: Sequence[Row], truth: Sequence[Truth]
 ) -> None:
     overlap = [
-        row.box.iou(box) if row.box and box else np.nan
-        for row, box in zip(rows, truth, strict=True)
+        row.box.iou(true.seen_box) if row.box and true.seen_box else np.nan
+        for row, true in zip(rows, truth, strict=True)
     ]
     axis.plot(time, overlap, "C0", linewidth=1.4)
     axis.set_ylim(-0.03, 1.03)
@@ -166,9 +171,10 @@ def _plot_overlap(
 
 
 def _plot_error(
-    axis: Axes, time: NDArray[np.float64], rows: Sequence[Row], truth: Sequence[Box | None]
+    axis: Axes, time: NDArray[np.float64], rows: Sequence[Row], truth: Sequence[Truth]
 ) -> None:
-    error = np.hypot(*(_centres([row.box for row in rows]) - _centres(truth)).T)
+    true = _centres([frame.seen_box for frame in truth])
+    error = np.hypot(*(_centres([row.box for row in rows]) - true).T)
     axis.plot(time, error, "C1", linewidth=1.4)
     axis.set_ylim(bottom=0)
     axis.set_ylabel("centre error / px")

@@ -28,7 +28,8 @@ from het_ros.tools.make_bag import parse_box
 from het_ros.tools.message_types import message_class
 from het_ros.tools.outputs import DEFAULT_TRACKER, OUTPUT_TYPES
 from het_ros.tools.player import timeline
-from het_ros.tools.report import ResultsFolder, Summary, write_report
+from het_ros.tools.report import ResultsFolder, write_report
+from het_ros.tools.summary import Summary
 from het_ros.tracking.box import Box
 
 EXAMPLE = """example:

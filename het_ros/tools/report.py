@@ -11,19 +11,16 @@ import numpy as np
 from numpy.typing import NDArray
 from tqdm import tqdm
 
-from het_ros.evaluation.metrics import Score, score
 from het_ros.tools.bag_reader import BagReader
 from het_ros.tools.drawing import annotate
 from het_ros.tools.interrupt import StopRequest
 from het_ros.tools.outputs import DEFAULT_TRACKER, read_answers, read_latencies
 from het_ros.tools.plot import plot_track
 from het_ros.tools.results import Row, write_csv
+from het_ros.tools.summary import Summary, Truth, summarise, usual_rate
 from het_ros.tools.video import VideoWriter
-from het_ros.tracking.box import Box
-from het_ros.tracking.estimate import State
 
 STRIP_FRAMES = 10
-NO_BOX = (np.nan,) * 4
 
 
 @dataclass(frozen=True)
@@ -76,47 +73,6 @@ def remove_bag(path: Path) -> None:
     shutil.rmtree(path)
 
 
-@dataclass(frozen=True)
-class Summary:
-    """How a run went.
-
-    Attributes:
-        sent: frames that the tracker was given.
-        answered: frames for which it gave a status.
-        seconds: time spent in each state, s.
-        latencies: from the arrival of a frame to its answer, ms.
-        score: against the ground truth; None without any.
-    """
-
-    sent: int
-    answered: int
-    seconds: dict[str, float]
-    latencies: NDArray[np.float64]
-    score: Score | None
-
-    @property
-    def answered_share(self) -> float:
-        """Share of frames with an answer, 0..1."""
-        return self.answered / self.sent if self.sent else 0.0
-
-    def lines(self) -> list[str]:
-        """The summary as text."""
-        spent = ", ".join(f"{state} {seconds:.1f} s" for state, seconds in self.seconds.items())
-        lines = [
-            f"frames    {self.sent} sent, {self.answered} answered ({self.answered_share:.1%})",
-            f"states    {spent or 'none'}",
-        ]
-        if len(self.latencies):
-            median, most = np.percentile(self.latencies, (50, 95))
-            lines.append(f"latency   {median:.1f} ms (median), {most:.1f} ms (95 %)")
-        if self.score:
-            lines.append(
-                f"accuracy  mean IoU {self.score.mean_overlap:.3f}, centre within 20 px in "
-                f"{self.score.p20:.1%} of {self.score.frames} frames"
-            )
-        return lines
-
-
 def write_report(
     source: BagReader,
     stamps: Sequence[int],
@@ -135,11 +91,11 @@ def write_report(
     """
     rows = read_answers(folder.bag, stamps, tracker)
     write_csv(rows, folder.csv)
-    truth_by_stamp = source.truth()
-    truth = [truth_by_stamp.get(row.stamp) for row in rows]
+    boxes, visible = source.truth(), source.visibility()
+    truth = [Truth(boxes.get(row.stamp), visible.get(row.stamp, 1.0)) for row in rows]
     with StopRequest() as stop:
         strip = _write_video(source, rows, truth, folder.video, stop)
-    summary = _summarise(rows, truth, read_latencies(folder.bag, tracker))
+    summary = summarise(rows, truth, read_latencies(folder.bag, tracker))
     title = f"{source.path.name}: {summary.sent} frames, {summary.answered_share:.0%} answered"
     if summary.score:
         title += f", mean IoU {summary.score.mean_overlap:.2f}"
@@ -150,7 +106,7 @@ def write_report(
 def _write_video(
     source: BagReader,
     rows: Sequence[Row],
-    truth: Sequence[Box | None],
+    truth: Sequence[Truth],
     path: Path,
     stop: StopRequest,
 ) -> list[tuple[int, NDArray[np.uint8]]]:
@@ -161,14 +117,14 @@ def _write_video(
     strip = []
     index_of = {row.stamp: index for index, row in enumerate(rows)}
     progress = tqdm(total=len(rows), desc="track.mp4", unit="frame", delay=2)
-    with VideoWriter(path, _usual_rate(rows)) as video, progress:
+    with VideoWriter(path, usual_rate(rows)) as video, progress:
         for stamp, image in source.images():
             index = index_of.get(stamp)
             if stop:
                 break
             if index is None:
                 continue
-            canvas = annotate(image, rows[index], truth[index])
+            canvas = annotate(image, rows[index], truth[index].box)
             video.add(canvas, stamp)
             progress.update()
             if index in wanted:
@@ -176,34 +132,3 @@ def _write_video(
             if index == len(rows) - 1:
                 break
     return strip
-
-
-def _usual_rate(rows: Sequence[Row]) -> float:
-    """Frames/s by the median distance of stamps."""
-    steps = np.diff([row.stamp for row in rows]) * 1e-9
-    usual = float(np.median(steps)) if len(steps) else 0.0
-    return min(1 / usual, 1000.0) if usual > 0 else 30.0
-
-
-def _summarise(
-    rows: Sequence[Row], truth: Sequence[Box | None], latencies: NDArray[np.float64]
-) -> Summary:
-    step = 1 / _usual_rate(rows)
-    counts = {state: sum(row.state is state for row in rows) for state in State}
-    return Summary(
-        sent=len(rows),
-        answered=sum(row.state is not None for row in rows),
-        seconds={state.value: n * step for state, n in counts.items() if n},
-        latencies=latencies,
-        score=_score(rows, truth),
-    )
-
-
-def _score(rows: Sequence[Row], truth: Sequence[Box | None]) -> Score | None:
-    """Score as the benchmark does, from the first true box on."""
-    first = next((i for i, box in enumerate(truth) if box), None)
-    if first is None or not any(row.box for row in rows):
-        return None
-    boxes = np.array([row.box.as_tuple() if row.box else NO_BOX for row in rows[first:]])
-    true = np.array([box.as_tuple() if box else NO_BOX for box in truth[first:]])
-    return score(boxes, true)

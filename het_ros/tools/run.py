@@ -18,7 +18,8 @@ from het_ros.tools.interrupt import StopRequest
 from het_ros.tools.make_bag import make_bag, parse_box
 from het_ros.tools.play import play
 from het_ros.tools.player import NobodyListensError
-from het_ros.tools.report import ResultsFolder, Summary, remove_bag, write_report
+from het_ros.tools.report import ResultsFolder, remove_bag, write_report
+from het_ros.tools.summary import Summary
 from het_ros.tools.tracker_process import (
     TrackerProcess,
     TrackerProcessError,

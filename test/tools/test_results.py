@@ -8,6 +8,7 @@ from het_ros import Box, State
 from het_ros.tools.drawing import annotate
 from het_ros.tools.plot import plot_track
 from het_ros.tools.results import Row, read_csv, write_csv
+from het_ros.tools.summary import Truth, summarise
 from het_ros.tools.video import VideoWriter
 
 ROWS = [
@@ -109,9 +110,9 @@ def test_a_camera_that_changes_its_size_still_makes_a_video(tmp_path):
 @pytest.mark.parametrize(
     ("rows", "truth"),
     [
-        (ROWS, [None] * 5),
-        (ROWS, [Box(0, 0, 17, 50), None, Box(1, 1, 5, 5), Box(1, 1, 5, 5), None]),
-        (ROWS[3:4], [None]),
+        (ROWS, [Truth()] * 5),
+        (ROWS, [Truth(Box(0, 0, 17, 50)), Truth(), *[Truth(Box(1, 1, 5, 5), 0.05)] * 3]),
+        (ROWS[3:4], [Truth()]),
         ([], []),
     ],
     ids=["no truth", "truth", "nothing answered", "no frames"],
@@ -120,3 +121,35 @@ def test_every_track_can_be_plotted(tmp_path, rows, truth):
     strip = [(i, np.zeros((48, 64, 3), np.uint8)) for i in range(len(rows))]
     plot_track(tmp_path / "track.png", rows, truth, strip, "a test")
     assert (tmp_path / "track.png").read_bytes().startswith(b"\x89PNG")
+
+
+def test_a_summary_counts_answers_and_holds_the_tracker_to_what_can_be_seen():
+    here, there = Box(10, 10, 20, 20), Box(100, 10, 20, 20)
+    rows = [
+        Row(0, here, (0.0, 0.0), 1.0, State.TRACKING),
+        Row(10**8, Box(10, 20, 20, 20), (0.0, 0.0), 0.9, State.TRACKING),
+        Row(2 * 10**8, there, (0.0, 0.0), 0.1, State.COASTING),
+        Row(3 * 10**8, None, None, 0.0, State.LOST),
+        Row(4 * 10**8),
+    ]
+    truth = [Truth(here), Truth(here), Truth(here, 0.0), Truth(here, 0.05), Truth()]
+    summary = summarise(rows, truth, np.array([10.0, 20.0, 30.0, 40.0]))
+    assert (summary.sent, summary.answered, summary.answered_share) == (5, 4, 0.8)
+    assert summary.seconds == pytest.approx({"TRACKING": 0.2, "COASTING": 0.1, "LOST": 0.1})
+    assert summary.score.frames == 2
+    assert summary.score.mean_overlap == pytest.approx((1 + 1 / 3) / 2)
+    assert (summary.hidden, summary.hidden_told) == (2, 2)
+    assert summary.lines() == [
+        "frames    5 sent, 4 answered (80.0%)",
+        "states    TRACKING 0.2 s, COASTING 0.1 s, LOST 0.1 s",
+        "latency   25.0 ms (median), 38.5 ms (95 %)",
+        "accuracy  mean IoU 0.667, centre within 20 px in 100.0% of 2 frames",
+        "hidden    in 2 frames; COASTING or LOST in 2 of them",
+    ]
+
+
+def test_a_run_without_frames_has_a_summary():
+    assert summarise([], [], np.array([])).lines() == [
+        "frames    0 sent, 0 answered (0.0%)",
+        "states    none",
+    ]
