@@ -36,7 +36,7 @@ def main(arguments: list[str] | None = None) -> int:
     options = parser().parse_args(arguments)
     try:
         return evaluate(options)
-    except (ValueError, SourceChangedError) as error:
+    except (ValueError, OSError, SourceChangedError) as error:
         print(f"evaluate: {error}", file=sys.stderr)
         return 2
     except KeyboardInterrupt:

@@ -64,7 +64,10 @@ def run_job(job: Job) -> Track:
             "and on a cluster install the same version everywhere"
         )
     with one_thread():
-        tracker = job.tracker.build(job.seed)
+        try:
+            tracker = job.tracker.build(job.seed)
+        except Exception as error:  # as with whatever else a tracker raises
+            return _failed(job, f"it cannot be built: {type(error).__name__}: {error}")
         if job.referee is not None:
             return follow_restarting(tracker, job.frames, job.referee)
         if job.camera is not None:
@@ -148,9 +151,14 @@ def _alone(job: Job) -> Track:
         with _processes(1):
             return next(_stream([job], pre_dispatch=1))[1]
     except TerminatedWorkerError:
-        track = Track.empty(len(job.frames), error="the process died (a crash in native code)")
-        track.boxes[:] = job.box.as_tuple()
-        return track
+        return _failed(job, "the process died (a crash in native code)")
+
+
+def _failed(job: Job, error: str) -> Track:
+    """A run that never came to an answer: its start's box stays, for the scorer."""
+    track = Track.empty(len(job.frames), error)
+    track.boxes[:] = job.box.as_tuple()
+    return track
 
 
 def _on_cluster(jobs: list[Job], scheduler: str) -> Iterator[tuple[Job, Track]]:

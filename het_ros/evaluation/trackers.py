@@ -12,6 +12,7 @@ from functools import cache, partial
 from pathlib import Path
 from typing import Any, Protocol
 
+import cv2
 import numpy as np
 from numpy.typing import NDArray
 
@@ -139,7 +140,8 @@ def tracker_spec(name: str) -> TrackerSpec:
     if base in BASES:
         config = _changed(BASES[base](), changes)
         values = json.dumps(dataclasses.asdict(config), sort_keys=True)
-        fingerprint = _hash(f"{values} {tracking_source()}")
+        libraries = f"numpy {np.__version__} opencv {cv2.__version__}"
+        fingerprint = _hash(f"{values} {tracking_source()} {libraries}")
         return TrackerSpec(
             label or described, partial(seeded_het, config), fingerprint, source=tracking_source()
         )

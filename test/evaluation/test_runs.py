@@ -90,6 +90,20 @@ def test_a_crash_in_native_code_is_a_recorded_failure_of_its_run_only(two, tmp_p
     assert all(track.error == "" for track in by.values())
 
 
+class Unbuilt(Identity):
+    """Needs what is not there."""
+
+    def __init__(self):
+        raise OSError("no weights")
+
+
+def test_a_tracker_that_cannot_be_built_fails_on_record(two, tmp_path):
+    broken = spec("unbuilt", partial(build, Unbuilt))
+    found = carry_out_plan(Plan([broken, STILL], two[:1]), Cache(tmp_path / "c"), quiet=True)
+    assert [run.track.error for run in found] == ["it cannot be built: OSError: no weights", ""]
+    np.testing.assert_array_equal(found[0].track.boxes, found[1].track.boxes)
+
+
 def test_what_was_run_is_not_run_again(two, tmp_path, monkeypatch):
     cache = Cache(tmp_path / "c")
     first = carry_out_plan(Plan([JITTER], two, seeds=2), cache, quiet=True)
