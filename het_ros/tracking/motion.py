@@ -37,6 +37,7 @@ class AdaptiveKalman:
     ) -> None:
         self._acceleration = acceleration
         self._first_noise = measurement_noise**2 * np.eye(2)
+        self._process_noise = np.zeros((4, 4))
         self._nominal_dt = nominal_dt
         self._longest_dt = longest_dt
         self._filter = KalmanFilter(dim_x=4, dim_z=2)
