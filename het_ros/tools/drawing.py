@@ -82,8 +82,7 @@ def _caption(canvas: NDArray[np.uint8], row: Row, colour: Colour) -> None:
         text += f"  score {row.score:.2f}"
     if row.velocity:
         text += f"  {np.hypot(*row.velocity):.0f} px/s"
-    place = 8, canvas.shape[0] - 10
-    for shade, thickness in (((0, 0, 0), 4), (colour, 1)):
-        cv2.putText(
-            canvas, text, place, cv2.FONT_HERSHEY_SIMPLEX, 0.6, shade, thickness, cv2.LINE_AA
-        )
+    (width, height), below = cv2.getTextSize(text, cv2.FONT_HERSHEY_SIMPLEX, 0.6, 1)
+    base = canvas.shape[0] - below - 4
+    canvas[base - height - 4 :, : width + 16] //= 4  # a dark ground, so that any image will do
+    cv2.putText(canvas, text, (8, base), cv2.FONT_HERSHEY_SIMPLEX, 0.6, colour, 1, cv2.LINE_AA)

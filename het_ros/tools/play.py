@@ -83,7 +83,7 @@ def play(
             executor.spin_once(timeout_sec=seconds)
 
         with BagWriter(recording) as bag_of_answers:
-            player = Player(node, bag, init)
+            player = Player(node, bag, tracker, init)
             recorder = Recorder(node, bag_of_answers, tracker)
             player.wait_for_subscriber(spin, wait, stop)
             _wait_for_tracker(recorder, tracker, spin, wait, stop)

@@ -83,18 +83,23 @@ class Player:
     Args:
         node: makes the publishers.
         bag: what to play, see :func:`timeline`.
+        tracker: full name of the tracker's node; init boxes go to its ``~/init_box``.
         init: a target to start with instead of the bag's own.
 
     Raises:
         BagError: the bag has no images, or a type that is not ROS 2 Jazzy's.
     """
 
-    def __init__(self, node: Node, bag: BagReader, init: Box | None = None) -> None:
+    def __init__(self, node: Node, bag: BagReader, tracker: str, init: Box | None = None) -> None:
         self.bag = bag
         self.init = init
         topics = played_topics(bag, init)
         self._publishers = {
-            topic: node.create_publisher(message_class(kind), topic, QOS)
+            topic: node.create_publisher(
+                message_class(kind),
+                f"{tracker}/init_box" if topic == INIT_BOX_TOPIC else topic,
+                QOS,
+            )
             for topic, kind in topics.items()
         }
 
@@ -104,15 +109,16 @@ class Player:
         Raises:
             NobodyListensError: nobody came; the text says what to look at.
         """
-        boxes = [topic for topic in self._publishers if topic.endswith("/init_box")]
-        needed = [self.bag.image_topic, *boxes]
+        needed = [
+            p for t, p in self._publishers.items() if t in (self.bag.image_topic, INIT_BOX_TOPIC)
+        ]
         end = time.monotonic() + seconds
         while not stop:
-            missing = [t for t in needed if not self._publishers[t].get_subscription_count()]
+            missing = [p.topic_name for p in needed if not p.get_subscription_count()]
             if not missing:
                 return
             if time.monotonic() > end:
-                raise NobodyListensError(_nobody(missing, seconds, self.bag))
+                raise NobodyListensError(self._nobody(missing, seconds))
             spin(LONGEST_SPIN)
 
     def publish(self, recorded: Recorded) -> None:
@@ -139,14 +145,15 @@ class Player:
             self.publish(recorded)
             yield recorded
 
-
-def _nobody(missing: list[str], seconds: float, bag: BagReader) -> str:
-    domain = os.environ.get("ROS_DOMAIN_ID", "0")
-    text = (
-        f"nobody subscribed to {' and '.join(missing)} within {seconds:g} s "
-        f"(ROS_DOMAIN_ID {domain}): start the tracker first"
-    )
-    if bag.image_topic in missing:
-        kind = "CompressedImage" if bag.compressed else "Image"
-        text += f", let it take {kind}, and remap its image topic to {bag.image_topic}"
-    return text
+    def _nobody(self, missing: list[str], seconds: float) -> str:
+        domain = os.environ.get("ROS_DOMAIN_ID", "0")
+        text = (
+            f"nobody subscribed to {' and '.join(missing)} within {seconds:g} s "
+            f"(ROS_DOMAIN_ID {domain}): start the tracker first"
+        )
+        images = self._publishers[self.bag.image_topic].topic_name
+        if images not in missing:
+            return f"{text}, or give its name with --tracker /namespace/name"
+        kind = "CompressedImage" if self.bag.compressed else "Image"
+        transport = "compressed" if self.bag.compressed else "raw"
+        return f"{text}; it has to take {kind} (-p image_transport:={transport}) on {images}"

@@ -135,6 +135,7 @@ def test_nobody_there_is_told_with_what_to_do(crossing_bag, own_domain, tmp_path
     told = capsys.readouterr().err
     assert "nobody subscribed to /image/compressed and /tracker/init_box" in told
     assert "start the tracker first" in told
+    assert "image_transport:=compressed" in told
     assert "ROS_DOMAIN_ID" in told
 
 
