@@ -7,6 +7,7 @@ import os
 import zipfile
 from dataclasses import fields
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -44,9 +45,8 @@ class Cache:
         file.parent.mkdir(parents=True, exist_ok=True)
         draft = file.with_suffix(f".{os.getpid()}.part")
         with draft.open("wb") as out:
-            np.savez_compressed(
-                out, **{f.name: np.asarray(getattr(track, f.name)) for f in fields(Track)}
-            )
+            rows: dict[str, Any] = {f.name: getattr(track, f.name) for f in fields(Track)}
+            np.savez_compressed(out, **rows)
         draft.replace(file)
 
     def _file(self, name: str) -> Path:

@@ -9,7 +9,7 @@ import sys
 from collections.abc import Iterator
 from pathlib import Path
 
-from het_ros.evaluation import opencv_peers, published, raw_boxes, report, tables
+from het_ros.evaluation import opencv_peers, pages, published, raw_boxes, report, tables
 from het_ros.evaluation.cache import Cache
 from het_ros.evaluation.drawing import colours
 from het_ros.evaluation.jobs import SourceChangedError
@@ -90,6 +90,15 @@ def parser() -> argparse.ArgumentParser:
         help="comma-separated; sequences of DATA that are not the published ones",
     )
     p.add_argument("--video", action="store_true", help="one annotated MP4 a sequence")
+    p.add_argument(
+        "--into",
+        type=Path,
+        action="append",
+        default=[],
+        metavar="PAGE",
+        help="Markdown page whose tables between <!-- evaluate: Trackers, AUC by sequence --> "
+        "and <!-- /evaluate --> are to be rewritten; may be given several times",
+    )
     p.add_argument("--quiet", action="store_true", help="no progress bar")
     return p
 
@@ -143,6 +152,9 @@ def _report(
         excluded = options.published_except.split(",")
         comparison = published.compare(options.published, results, excluded)
     drawn, listed = plots(results, palette), tables.tables(results, comparison)
+    for page in options.into:
+        pages.update(page, results, listed)
+        yield page
     yield report.write_markdown(results, listed, drawn, options.out)
     pictures = strips(scored, plan.sequences, best_first, palette)
     yield report.write_html(results, listed, drawn, pictures, palette, options.out)

@@ -36,11 +36,12 @@ def draw_boxes(
 
     The first box lies on top of the others.
     """
-    canvas = cv2.resize(image, None, fx=scale, fy=scale, interpolation=cv2.INTER_LINEAR)
+    size = round(image.shape[1] * scale), round(image.shape[0] * scale)
+    canvas = np.asarray(cv2.resize(image, size, interpolation=cv2.INTER_LINEAR), np.uint8)
     if truth is not None:
         _rectangle(canvas, truth * scale, TRUTH, 3)
         _rectangle(canvas, truth * scale, (0, 0, 0), 1)
-    for name, box in reversed(boxes.items()):
+    for name, box in reversed(list(boxes.items())):
         _rectangle(canvas, box * scale, palette[name], 2)
     return canvas
 

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import contextlib
+import importlib
 import time
 from collections.abc import Iterator
 from dataclasses import dataclass
+from typing import Any
 
 import cv2
 import joblib
@@ -162,7 +164,9 @@ def _failed(job: Job, error: str) -> Track:
 
 
 def _on_cluster(jobs: list[Job], scheduler: str) -> Iterator[tuple[Job, Track]]:
-    from dask.distributed import Client  # an extra: only clusters need it
-
-    with Client(scheduler), joblib.parallel_config("dask"):
+    try:
+        distributed: Any = importlib.import_module("dask.distributed")
+    except ImportError:
+        raise ValueError("--scheduler needs Dask: pip install distributed") from None
+    with distributed.Client(scheduler), joblib.parallel_config("dask"):
         yield from _stream(jobs, pre_dispatch="all")

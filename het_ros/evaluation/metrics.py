@@ -19,17 +19,18 @@ def overlaps(boxes: Floats, truth: Floats) -> Floats:
     high = np.minimum(boxes[:, :2] + boxes[:, 2:], truth[:, :2] + truth[:, 2:])
     shared = np.clip(high - low, 0, None).prod(axis=1)
     union = boxes[:, 2:].prod(axis=1) + truth[:, 2:].prod(axis=1) - shared
-    return shared / union
+    return np.asarray(shared / union)
 
 
 def centre_errors(boxes: Floats, truth: Floats) -> Floats:
     """Distance of the centres row by row, px: (n, 4), (n, 4) -> (n,)."""
-    return np.linalg.norm(_centres(boxes) - _centres(truth), axis=1)
+    return np.asarray(np.linalg.norm(_centres(boxes) - _centres(truth), axis=1))
 
 
 def normalised_errors(boxes: Floats, truth: Floats) -> Floats:
     """Distance of the centres in units of the true width and height (TrackingNet): (n,)."""
-    return np.linalg.norm((_centres(boxes) - _centres(truth)) / truth[:, 2:], axis=1)
+    apart = (_centres(boxes) - _centres(truth)) / truth[:, 2:]
+    return np.asarray(np.linalg.norm(apart, axis=1))
 
 
 def _centres(boxes: Floats) -> Floats:
@@ -41,12 +42,12 @@ def success_curve(overlap: Floats) -> Floats:
 
     An overlap of 1 is not over the threshold 1, so a perfect tracker's mean is 20/21.
     """
-    return (overlap[:, None] > OVERLAP_THRESHOLDS).mean(axis=0)
+    return np.asarray((overlap[:, None] > OVERLAP_THRESHOLDS).mean(axis=0))
 
 
 def precision_curve(error: Floats, thresholds: Floats = ERROR_THRESHOLDS) -> Floats:
     """Share of frames whose error is at most each threshold: (n,) -> (thresholds,)."""
-    return (error[:, None] <= thresholds).mean(axis=0)
+    return np.asarray((error[:, None] <= thresholds).mean(axis=0))
 
 
 @dataclass(frozen=True)

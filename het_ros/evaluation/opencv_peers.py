@@ -36,7 +36,8 @@ class Peer:
         place: Any = cv2
         for part in self.factory.split("."):
             place = getattr(place, part, None)
-        return place
+        found: Callable[[], Any] | None = place
+        return found
 
 
 PEERS = {
@@ -88,9 +89,8 @@ class OpenCvTracker:
         create = self._peer.find()
         assert create is not None
         self._tracker = create()
-        rectangle = box.as_tuple()
-        if self._peer.whole:
-            rectangle = tuple(round(value) for value in rectangle)
+        sides = box.as_tuple()
+        rectangle = [round(value) for value in sides] if self._peer.whole else list(sides)
         # The old API answers False, the new one None; both raise cv2.error on bad boxes.
         if self._tracker.init(np.ascontiguousarray(image), rectangle) is False:
             raise RuntimeError(f"{self._peer.factory} refused the box {rectangle}")
@@ -100,4 +100,5 @@ class OpenCvTracker:
         found, box = self._tracker.update(image)
         if not found:
             return Answer(None, "LOST")
-        return Answer(tuple(float(value) for value in box), "TRACKING")
+        x, y, w, h = (float(value) for value in box)
+        return Answer((x, y, w, h), "TRACKING")

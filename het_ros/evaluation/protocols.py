@@ -4,13 +4,12 @@ from __future__ import annotations
 
 import time
 import traceback
-from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
-from het_ros.evaluation.answers import Answer, Track
+from het_ros.evaluation.answers import Track
 from het_ros.evaluation.metrics import overlaps
 from het_ros.evaluation.sequences import Frames, Sequence
 from het_ros.evaluation.trackers import Tracker
@@ -76,8 +75,7 @@ def follow(tracker: Tracker, frames: Frames, box: Box) -> Track:
     track = Track.empty(len(frames))
     track.boxes[0] = box.as_tuple()
     for row in range(len(frames)):
-        image = frames[row]
-        if not _step(tracker, image, box, frames.dt, track, row, first=row == 0):
+        if not _step(tracker, frames[row], None if row else box, frames.dt, track, row):
             break
     return _filled(track)
 
@@ -94,7 +92,7 @@ def follow_camera(tracker: Tracker, frames: Frames, box: Box, camera: float) -> 
     last = 0
     while row < len(frames):
         dt = (row - last) / camera
-        if not _step(tracker, frames[row], box, dt, track, row, first=row == 0):
+        if not _step(tracker, frames[row], None if row else box, dt, track, row):
             break
         free = max(free, row / camera) + float(track.seconds[row])
         last, row = row, max(row + 1, int(np.floor(free * camera)))
@@ -107,7 +105,8 @@ def follow_restarting(tracker: Tracker, frames: Frames, truth: NDArray[np.float6
     """VOT's supervised run: a box that misses the target is a failure, and a new start follows.
 
     The referee here holds the truth, (n, 4) px; the tracker still gets images and the boxes of
-    its starts only. Rows between a failure and the new start stay NaN.
+    its starts only. A tracker that raises has failed as well. Rows between a failure and the new
+    start stay NaN.
     """
     track = Track.empty(len(frames))
     track.starts = []
@@ -120,10 +119,9 @@ def follow_restarting(tracker: Tracker, frames: Frames, truth: NDArray[np.float6
         if begin:
             track.boxes[row] = truth[row]
             track.starts.append(row)
-        if not _step(tracker, frames[row], box, frames.dt, track, row, first=begin):
-            break
+        alive = _step(tracker, frames[row], box, frames.dt, track, row)
         shared = overlaps(track.boxes[row : row + 1], truth[row : row + 1])[0]
-        begin = shared <= 0  # NaN, an absent target, is no failure
+        begin = not alive or bool(shared <= 0)  # NaN, an absent target, is no failure
         if begin:
             track.failures.append(row)
             track.boxes[row] = np.nan
@@ -140,20 +138,21 @@ def _step(
     dt: float,
     track: Track,
     row: int,
-    first: bool,
 ) -> bool:
-    """One timed ``init`` or ``update``; False when the tracker died of it."""
-    call: Callable[[], Answer | None]
-    call = (lambda: tracker.init(image, box)) if first else (lambda: tracker.update(image, dt))
+    """One timed ``init`` on a box, or ``update`` where there is none; False when it raised."""
+    answer = None
+    begun = time.perf_counter()
     try:
-        begun = time.perf_counter()
-        answer = call()
-        track.seconds[row] = time.perf_counter() - begun
+        if box is not None:
+            tracker.init(image, box)
+        else:
+            answer = tracker.update(image, dt)
     except Exception as error:  # whatever a peer raises is its failure, not the run's end
         reason = traceback.format_exception_only(error)[-1].strip()
-        track.error = f"frame {row}: {reason}"
+        track.error = track.error or f"frame {row}: {reason}"
         return False
-    if not first:
+    track.seconds[row] = time.perf_counter() - begun
+    if answer is not None:
         track.put(row, answer)
     return True
 

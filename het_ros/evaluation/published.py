@@ -57,7 +57,7 @@ def read(file: Path) -> dict[str, Any]:
         ValueError: the file holds none.
     """
     try:
-        content = json.loads(file.read_text())
+        content: dict[str, Any] = json.loads(file.read_text())
         if isinstance(content["per_sequence_overlap"], dict):
             return content
         reason = "per_sequence_overlap is no mapping"

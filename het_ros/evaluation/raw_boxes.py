@@ -33,4 +33,4 @@ def write(runs: Iterable[Run], folders: Mapping[str, str], out: Path) -> None:
 
 def read(file: Path) -> np.ndarray:
     """Read such a file back as (n, 4) boxes counted from 0."""
-    return np.loadtxt(file, delimiter=",", ndmin=2) - FIRST_PIXEL
+    return np.asarray(np.loadtxt(file, delimiter=",", ndmin=2) - FIRST_PIXEL)

@@ -104,5 +104,6 @@ def _attributes(data: Path) -> dict[str, list[str]]:
     for folder in (data, data.parent):
         file = folder / "attributes.json"
         if file.is_file():
-            return json.loads(file.read_text())
+            tags: dict[str, list[str]] = json.loads(file.read_text())
+            return tags
     return {}

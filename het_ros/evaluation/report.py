@@ -23,7 +23,7 @@ def write_markdown(
     (out / "plots").mkdir(parents=True, exist_ok=True)
     for name, png in plots.items():
         (out / "plots" / f"{name}.png").write_bytes(png)
-    parts = [f"# {title(results)}", ", ".join(results["machine"].values())]
+    parts = [f"# {title(results)}", origin(results)]
     pictures = " ".join(f"![{name}](plots/{name}.png)" for name in plots)
     for number, table in enumerate(tables):
         parts += [f"## {table.title}", table.markdown()]
@@ -50,7 +50,7 @@ def write_html(
     names = ranked(results)
     page = environment.get_template("report.html.j2").render(
         title=title(results),
-        machine=", ".join(results["machine"].values()),
+        origin=origin(results),
         tables=tables,
         plots={name: _data_uri(png, "png") for name, png in plots.items()},
         strips={name: _data_uri(jpeg, "jpeg") for name, jpeg in strips.items()},
@@ -75,6 +75,15 @@ def title(results: Results) -> str:
     }
     count = len(results["sequences"])
     return f"{kinds[results['protocol']]}: {count} sequences, {results['seeds']} seeds"
+
+
+def origin(results: Results) -> str:
+    """When and where it was measured."""
+    m = results["machine"]
+    return (
+        f"{results['date']}; {m['cpu']}; {m['system']}; Python {m['python']}, "
+        f"NumPy {m['numpy']}, OpenCV {m['opencv']}"
+    )
 
 
 def _failures(results: Results) -> list[dict[str, Any]]:

@@ -102,8 +102,9 @@ def carry_out_plan(
     Real time is measured with one job at a time and never on a cluster.
     """
     planned = plan.jobs()
-    tracks = {job.key: cache.load(job.key) for job, _ in planned}
-    todo = [job for job, _ in planned if tracks[job.key] is None]
+    loaded = {job.key: cache.load(job.key) for job, _ in planned}
+    tracks = {key: track for key, track in loaded.items() if track is not None}
+    todo = [job for job, _ in planned if job.key not in tracks]
     if plan.protocol == "realtime":
         workers, scheduler = 1, ""
     frames = sum(len(job.frames) for job, _ in planned)

@@ -35,7 +35,7 @@ class Frames:
         image = cv2.imread(self.files[index], cv2.IMREAD_COLOR)
         if image is None:
             raise OSError(f"{self.files[index]} cannot be read as an image")
-        return image
+        return np.asarray(image, np.uint8)
 
     def after(self, first: int) -> Frames:
         """The frames from number ``first`` (counted from 0) on."""
@@ -80,4 +80,4 @@ class Sequence:
     @property
     def visible(self) -> NDArray[np.bool_]:
         """(n,) bool: frames in which the target has a valid box."""
-        return ~np.isnan(self.truth).any(axis=1)
+        return np.asarray(~np.isnan(self.truth).any(axis=1))

@@ -50,7 +50,7 @@ def state(pairs: Pairs) -> dict[str, Any]:
     said, visible, lost, off = [], [], [], []
     longest, back = 0, []
     for run, truth in pairs:
-        states, seen = run.track.states[1:], ~np.isnan(truth).any(axis=1)[1:]
+        states, seen = run.track.states[1:], np.asarray(~np.isnan(truth[1:]).any(axis=1))
         overlap = np.nan_to_num(overlaps(run.track.boxes, truth)[1:])
         tracking = states == "TRACKING"
         false_lost = (states == "LOST") & seen

@@ -48,7 +48,7 @@ def _first_runs(scored: Listing[Scored], sequence: str, ranked: Listing[str]) ->
 
 def disagreement(overlaps: Listing[NDArray[np.float64]]) -> NDArray[np.float64]:
     """(n,) standard deviation of the trackers' overlaps, frame by frame; 0 where none counts."""
-    return np.nan_to_num(np.std(np.stack(overlaps), axis=0))
+    return np.asarray(np.nan_to_num(np.std(np.stack(overlaps), axis=0)))
 
 
 def spaced_peaks(values: NDArray[np.float64], count: int) -> list[int]:

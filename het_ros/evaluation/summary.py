@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import datetime
 import platform
 from collections import defaultdict
 from collections.abc import Iterable, Mapping
@@ -49,6 +50,7 @@ def summarise(plan: Plan, scored: Listing[Scored], timing: Timing) -> dict[str, 
         trackers[spec.name] = _tracker(plan, spec.name, own, sequences, timing)
     return {
         "protocol": plan.protocol,
+        "date": datetime.date.today().isoformat(),
         "seeds": plan.seeds,
         "machine": machine(),
         "timing": {"frames": timing.frames, "load": timing.load},

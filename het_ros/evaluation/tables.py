@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Any
 
@@ -124,7 +124,7 @@ def by_sequence(results: Results, figure: str, title: str) -> Table:
     names = ranked(results)
     of = {n: results["trackers"][n]["sequences"] for n in names}
     rows = [
-        _compared(sequence, names, lambda n, s=sequence: of[n][s][figure])
+        _compared(sequence, [of[n][sequence][figure] for n in names])
         for sequence in results["sequences"]
     ]
     return Table(title, ("sequence", *names), tuple(rows))
@@ -136,15 +136,14 @@ def by_attribute(results: Results) -> Table:
     of = {n: results["trackers"][n]["attributes"] for n in names}
     tags = of[names[0]]
     rows = [
-        _compared(f"{tag} ({found['sequences']})", names, lambda n, t=tag: of[n][t]["auc"])
+        _compared(f"{tag} ({found['sequences']})", [of[n][tag]["auc"] for n in names])
         for tag, found in tags.items()
     ]
     note = "In brackets the number of sequences."
     return Table("AUC by attribute", ("attribute", *names), tuple(rows), note)
 
 
-def _compared(label: str, names: list[str], value: Callable[[str], float]) -> Row:
-    values = [value(name) for name in names]
+def _compared(label: str, values: list[float]) -> Row:
     best = max(values)
     return Row((Cell(label), *(Cell(f"{v:.3f}", v == best) for v in values)))
 

@@ -85,20 +85,32 @@ def _interleaved(
         for first in range(1, len(images), BLOCK):
             block = range(first, min(first + BLOCK, len(images)))
             for k, tracker in enumerate(built):
-                for row in block if built[k] is not None else ():
-                    begun = time.perf_counter()
-                    try:
-                        tracker.update(images[row], frames.dt)
-                    except Exception:  # the scored runs record what it died of
-                        built[k] = None
-                        break
-                    times[k][row - 1] = time.perf_counter() - begun
+                if tracker and not _timed(tracker, images, block, frames.dt, times[k]):
+                    built[k] = None
     return times
 
 
+def _timed(
+    tracker: Tracker,
+    images: list[NDArray[np.uint8]],
+    block: range,
+    dt: float,
+    times: NDArray[np.float64],
+) -> bool:
+    """Time the updates of one block into ``times``; False when the tracker raised."""
+    for row in block:
+        begun = time.perf_counter()
+        try:
+            tracker.update(images[row], dt)
+        except Exception:  # the scored runs record what it died of
+            return False
+        times[row - 1] = time.perf_counter() - begun
+    return True
+
+
 def _started(spec: TrackerSpec, image: NDArray[np.uint8], box: Box) -> Tracker | None:
-    tracker = spec.build(0)
     try:
+        tracker = spec.build(0)
         tracker.init(image, box)
     except Exception:  # the scored runs record what it died of
         return None

@@ -209,6 +209,25 @@ def test_restarts_count_failures_and_leave_out_the_burn_in(tmp_path):
     assert result["reliability"] == pytest.approx(np.exp(-5))
 
 
+def test_a_tracker_that_raises_is_started_anew_and_the_error_kept(tmp_path):
+    sequence = write_sequence(tmp_path / "still", [(10, 10, 10, 10)] * 12)
+
+    class Raises(Identity):
+        def init(self, image, box):
+            super().init(image, box)
+            self.calls = 0
+
+        def update(self, image, dt):
+            self.calls += 1
+            if self.calls == 2:
+                raise RuntimeError("no more")
+            return super().update(image, dt)
+
+    track = follow_restarting(Raises(), sequence.frames, sequence.truth)
+    assert (track.starts, track.failures) == ([0, 7], [2, 9])
+    assert track.error == "frame 2: RuntimeError: no more"
+
+
 def test_an_absent_target_is_no_failure(tmp_path):
     boxes = [(10, 10, 10, 10), None, None, (10, 10, 10, 10)]
     sequence = write_sequence(tmp_path / "gone", boxes)
