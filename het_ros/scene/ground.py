@@ -11,7 +11,7 @@ from het_ros.scene.camera import CameraState, Lens, plane_to_image
 from het_ros.scene.pixels import warp_window
 from het_ros.scene.texture import blocks, fractal, tinted
 
-GRAIN = 40  # texels a metre
+GRAIN = 32  # texels a metre
 LEFT, RIGHT, BACK, FRONT = -32.0, 32.0, -8.0, 20.0  # m: what the texture covers
 PROMENADE, VERGE, ROAD, PAVEMENT = 2.7, 8.2, 10.4, 17.0  # z where each strip begins, m
 DETAIL_GRAIN, DETAIL_SIDE = 160, 512  # fine grain laid over what is near: texels a metre, px

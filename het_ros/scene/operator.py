@@ -24,9 +24,7 @@ class Operator:
         sway = 0.05 * np.sin(2 * np.pi * self._t / rng.uniform(6, 9) + rng.uniform(0, 6))
         yaw = np.full(len(self._t), story.yaw)
         if story.follow > 0:
-            at = np.array([target.at(t)[:2] for t in self._t])
-            lens = np.array([self._dolly.at(t)[:2] for t in self._t])
-            bearing = np.arctan2(*(at - lens).T)
+            bearing = np.arctan2(*(target.places(self._t) - self._dolly.places(self._t)).T)
             yaw = yaw + story.follow * smooth(bearing + sway, 1.8)
         waves = [(rng.uniform(0.7, 5.5), rng.uniform(0, 2 * np.pi)) for _ in range(12)]
         tremble = [np.sin(2 * np.pi * f * self._t + p) / f**0.8 for f, p in waves]

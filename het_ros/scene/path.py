@@ -59,6 +59,10 @@ class Path:
         x, z, heading, walked, speed = (float(np.interp(t, self._t, k)) for k in tracks)
         return x, z, heading, walked, speed if self._t[0] < t < self._t[-1] else 0.0
 
+    def places(self, times: np.ndarray) -> np.ndarray:
+        """(x, z) m at many times (n,) s, (n, 2)."""
+        return np.stack([np.interp(times, self._t, k) for k in self._place.T], axis=1)
+
     @property
     def end(self) -> float:
         """Time of the last waypoint, s."""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import cached_property
 
 import cv2
 import numpy as np
@@ -16,7 +17,7 @@ from het_ros.scene.operator import Operator
 from het_ros.scene.path import Path
 from het_ros.scene.pixels import Piece, lay, overlap
 from het_ros.scene.sensor import Sensor
-from het_ros.scene.stories import STORIES
+from het_ros.scene.stories import STORIES, Story
 from het_ros.scene.street import Street
 from het_ros.tracking.box import Box
 
@@ -55,15 +56,21 @@ class Scene:
 
     Args:
         config: what to render.
+        story: what happens, instead of the one that ``config.story`` names.
         clothes: the target's, instead of those that the seed draws.
     """
 
-    def __init__(self, config: SceneConfig | None = None, clothes: Outfit | None = None) -> None:
+    def __init__(
+        self,
+        config: SceneConfig | None = None,
+        story: Story | None = None,
+        clothes: Outfit | None = None,
+    ) -> None:
         self.config = config or SceneConfig()
         seeds = np.random.SeedSequence(self.config.seed).spawn(5)
         plot, dress, build, hold, record = (np.random.default_rng(s) for s in seeds)
         self.lens = Lens.wide(self.config.width, self.config.height)
-        self.story = STORIES[self.config.story](plot)
+        self.story = story or STORIES[self.config.story](plot)
         self.seconds = self.config.seconds or self.story.seconds
         own = outfit(dress)
         path = Path(self.story.target)
@@ -169,18 +176,19 @@ class Scene:
         window = image[top:bottom, left:right]
         cv2.multiply(window, shade, dst=window, scale=1 / 255)
 
+    @cached_property
     def visibility(self) -> np.ndarray:
-        """``visible`` of every frame, (frames,) float64, without rendering the images."""
-        seen = []
+        """``visible`` of every frame, (frames,) float64, found without rendering the images."""
+        seen = np.zeros(len(self))
         for index in range(len(self)):
             t = index / self.config.rate
             camera = self.camera_at(t)
             target = self._target.draw(t, camera, self.lens)
-            seen.append(self._seen(target, self._pieces(target, t, camera))[1])
-        return np.array(seen)
+            seen[index] = self._seen(target, self._pieces(target, t, camera))[1]
+        return seen
 
     def hidden_ranges(self, below: float = 0.02) -> list[tuple[int, int]]:
         """Ranges [first, last) of the frames that show less than that part of the target."""
-        hidden = np.concatenate([[False], self.visibility() < below, [False]])
+        hidden = np.concatenate([[False], self.visibility < below, [False]])
         edges = np.flatnonzero(hidden[1:] != hidden[:-1])
         return [(int(a), int(b)) for a, b in zip(edges[::2], edges[1::2], strict=True)]

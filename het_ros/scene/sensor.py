@@ -7,7 +7,6 @@ import numpy as np
 
 from het_ros.scene.camera import CameraState, Lens
 
-
 SPOT = 0.62  # px: deviation of the spot that a lens and a Bayer pattern make of a point
 
 

@@ -29,7 +29,7 @@ CAMERA_INFO_TOPIC = "/camera_info"
 VISIBILITY_TOPIC = "/ground_truth/visibility"
 
 EXAMPLE = """examples:
-  python -m het_ros.tools.make_scene_bag bags/follow_walk --seed 11 --rate 15 --quality 37
+  python -m het_ros.tools.make_scene_bag bags/follow_walk --seed 11 --rate 15 --quality 36
   python -m het_ros.tools.make_scene_bag out/hidden --story hidden_2s
 """
 
