@@ -165,7 +165,7 @@ def main(argv: Sequence[str] | None = None) -> int:
                 wait=options.wait,
                 ros_arguments=arguments[cut:],
             )
-            summary = write_report(bag, stamps, folder, options.tracker)
+            summary = write_report(bag, stamps, folder, tracker=options.tracker)
     except (OSError, ValueError, NobodyListensError) as error:
         print(f"play: {error}", file=sys.stderr)
         return 1

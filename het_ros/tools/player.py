@@ -31,6 +31,7 @@ PLAYED_TYPES = (
 )
 QOS = QoSProfile(depth=10, reliability=ReliabilityPolicy.RELIABLE)
 LONGEST_SPIN = 0.05  # s; so long may Ctrl-C take to be noticed
+CATCH_UP = 0.8  # of the time between two messages is kept even when a play is late
 
 Spin = Callable[[float], None]
 
@@ -128,21 +129,26 @@ class Player:
     def in_real_time(self, spin: Spin, rate: float, stop: StopRequest) -> Iterator[Recorded]:
         """Publish every message when it is due and hand it on.
 
+        Whoever takes the newest image only would miss one of two that come at once. So a play
+        that was held up catches up little by little, as no camera sends images in bursts.
+
         Args:
             spin: serves other callbacks for at most so many seconds.
             rate: 1 is real time, 2 twice as fast.
             stop: ends the play.
         """
-        first: int | None = None
-        began = time.monotonic()
+        previous: int | None = None
+        due = published = time.monotonic()
         for recorded in timeline(self.bag, self.init):
-            first = recorded.time if first is None else first
-            due = began + (recorded.time - first) * 1e-9 / rate
-            while not stop and (left := due - time.monotonic()) > 0:
+            step = 0.0 if previous is None else (recorded.time - previous) * 1e-9 / rate
+            due, previous = due + step, recorded.time
+            due_now = max(due, published + CATCH_UP * step)
+            while not stop and (left := due_now - time.monotonic()) > 0:
                 spin(min(left, LONGEST_SPIN))
             if stop:
                 return
             self.publish(recorded)
+            published = time.monotonic()
             yield recorded
 
     def _nobody(self, missing: list[str], seconds: float) -> str:

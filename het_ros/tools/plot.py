@@ -5,13 +5,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import Path
 
-import matplotlib
-
-matplotlib.use("Agg")
-
-import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from het_ros.tools.drawing import STATE_COLOURS
@@ -49,9 +45,7 @@ def plot_track(
     strip_rows = 2 if len(strip) > 1 else 1
     tall = _aspect(strip) * FIGURE_WIDTH / columns + 0.2
     heights = [tall] * strip_rows + [PANEL_HEIGHT] * len(panels)
-    figure = plt.figure(
-        figsize=(FIGURE_WIDTH, sum(heights) + CAPTIONS_ABOVE), layout="constrained"
-    )
+    figure = Figure(figsize=(FIGURE_WIDTH, sum(heights) + CAPTIONS_ABOVE), layout="constrained")
     figure.suptitle(title)
     above, below = figure.subfigures(
         2, 1, height_ratios=(sum(heights[:strip_rows]), sum(heights[strip_rows:]))
@@ -70,7 +64,6 @@ def plot_track(
         axis.margins(x=0.01)
     axes[-1].set_xlabel("time / s")
     figure.savefig(path, dpi=100)
-    plt.close(figure)
 
 
 def _aspect(strip: Sequence[tuple[int, NDArray[np.uint8]]]) -> float:

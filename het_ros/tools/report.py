@@ -77,7 +77,9 @@ def write_report(
     source: BagReader,
     stamps: Sequence[int],
     folder: ResultsFolder,
+    *,
     tracker: str = DEFAULT_TRACKER,
+    name: str = "",
 ) -> Summary:
     """Write CSV, MP4 and PNG of a recording in ``folder.bag``.
 
@@ -88,6 +90,7 @@ def write_report(
         stamps: header stamps of the frames that were sent, ns.
         folder: holds the recording and takes the results.
         tracker: full name of the tracker's node.
+        name: what was played, for the picture's title; by default the bag's folder.
     """
     rows = read_answers(folder.bag, stamps, tracker)
     write_csv(rows, folder.csv)
@@ -96,7 +99,9 @@ def write_report(
     with StopRequest() as stop:
         strip = _write_video(source, rows, truth, folder.video, stop)
     summary = summarise(rows, truth, read_latencies(folder.bag, tracker))
-    title = f"{source.path.name}: {summary.sent} frames, {summary.answered_share:.0%} answered"
+    title = (
+        f"{name or source.path.name}: {summary.sent} frames, {summary.answered_share:.0%} answered"
+    )
     if summary.score:
         title += f", mean IoU {summary.score.mean_overlap:.2f}"
     plot_track(folder.picture, rows, truth, strip, title)

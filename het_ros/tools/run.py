@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import argparse
 import os
+import re
 import sys
 from collections.abc import Sequence
 from pathlib import Path
@@ -47,6 +48,7 @@ def run(
     init: Box | None = None,
     rate: float = 1.0,
     parameters: Sequence[str] = (),
+    name: str = "",
 ) -> tuple[Summary, bool]:
     """Play a bag to a tracker that is started for it, in a ROS domain of its own, and report.
 
@@ -57,6 +59,7 @@ def run(
         init: target in the first frame, px; by default the bag's own init box.
         rate: 1 is real time.
         parameters: of the tracker, each as "name:=value".
+        name: what is played, for the picture's title; by default the bag's folder.
 
     Returns:
         The summary, and whether the whole bag was played (False after Ctrl-C).
@@ -73,7 +76,7 @@ def run(
             stamps = play(
                 bag, folder.bag, stop, rate=rate, init=init, wait=START_UP, alive=tracker.check
             )
-        return write_report(bag, stamps, folder), not stop
+        return write_report(bag, stamps, folder, name=name), not stop
 
 
 def _arguments(bag: BagReader, parameters: Sequence[str]) -> list[str]:
@@ -87,6 +90,15 @@ def _arguments(bag: BagReader, parameters: Sequence[str]) -> list[str]:
     for parameter in parameters:
         arguments += ["-p", parameter]
     return arguments
+
+
+def _warnings(log: Path) -> list[str]:
+    """What the tracker warned of, without time and name."""
+    lines = log.read_text(errors="replace").splitlines()
+    found = (
+        re.match(r"\[(WARN|ERROR|FATAL)\] \[[\d.]+\] \[[^]]*\]: (.*)", line) for line in lines
+    )
+    return [match.group(2) for match in found if match]
 
 
 def _shipped_bag() -> Path:
@@ -153,12 +165,15 @@ def main(argv: Sequence[str] | None = None) -> int:
                 init=None if footage else options.init,
                 rate=options.rate,
                 parameters=options.parameters,
+                name=footage.name if footage else "",
             )
     except (OSError, ValueError, NobodyListensError, TrackerProcessError) as error:
         print(f"run: {error}", file=sys.stderr)
         return 1
     except KeyboardInterrupt:
         return 130
+    for warning in _warnings(folder.path / "tracker.log"):
+        print(f"tracker   {warning}")
     seen = [folder.video, folder.picture, folder.csv, folder.bag, folder.path / "tracker.log"]
     print("\n".join([*summary.lines(), "look at   " + "\n          ".join(map(str, seen))]))
     return 0 if whole else 130
