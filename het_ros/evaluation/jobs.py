@@ -3,11 +3,9 @@
 from __future__ import annotations
 
 import contextlib
-import importlib
 import time
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Any
 
 import cv2
 import joblib
@@ -16,6 +14,7 @@ from joblib.externals.loky.process_executor import TerminatedWorkerError
 from numpy.typing import NDArray
 from threadpoolctl import threadpool_limits
 
+from het_ros.evaluation import cluster
 from het_ros.evaluation.answers import Track
 from het_ros.evaluation.protocols import follow, follow_camera, follow_restarting
 from het_ros.evaluation.sequences import Frames
@@ -104,7 +103,8 @@ def carry_out(
     failed run, the others are run again.
     """
     if scheduler:
-        yield from _on_cluster(jobs, scheduler)
+        with cluster.connected(scheduler):
+            yield from _stream(jobs, pre_dispatch="all")
         return
     left = {job.key: job for job in jobs}
     try:
@@ -161,12 +161,3 @@ def _failed(job: Job, error: str) -> Track:
     track = Track.empty(len(job.frames), error)
     track.boxes[:] = job.box.as_tuple()
     return track
-
-
-def _on_cluster(jobs: list[Job], scheduler: str) -> Iterator[tuple[Job, Track]]:
-    try:
-        distributed: Any = importlib.import_module("dask.distributed")
-    except ImportError:
-        raise ValueError("--scheduler needs Dask: pip install distributed") from None
-    with distributed.Client(scheduler), joblib.parallel_config("dask"):
-        yield from _stream(jobs, pre_dispatch="all")

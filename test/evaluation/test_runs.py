@@ -179,15 +179,40 @@ def test_a_worker_with_another_source_of_the_tracker_refuses(two):
         jobs.run_job(job)
 
 
-def test_a_dask_cluster_gives_the_same_results(two, tmp_path):
+@pytest.fixture
+def cluster():
     distributed = pytest.importorskip(
         "dask.distributed", reason="clusters need the extra `cluster`"
     )
+    workers = {"n_workers": 2, "threads_per_worker": 1, "dashboard_address": None}
+    with distributed.LocalCluster(**workers) as started:
+        yield started
+
+
+def test_a_dask_cluster_gives_the_same_results(two, tmp_path, cluster):
     plan = Plan([tracker_spec("het"), tracker_spec("identity")], two, seeds=2)
     here = carry_out_plan(plan, Cache(tmp_path / "a"), quiet=True)
-    with distributed.LocalCluster(
-        n_workers=2, threads_per_worker=1, dashboard_address=None
-    ) as cluster:
-        cache = Cache(tmp_path / "b")
-        there = carry_out_plan(plan, cache, scheduler=cluster.scheduler_address, quiet=True)
+    cache = Cache(tmp_path / "b")
+    there = carry_out_plan(plan, cache, scheduler=cluster.scheduler_address, quiet=True)
     assert same(tracks(here), tracks(there))
+
+
+def test_a_cluster_without_het_ros_is_told_so(two, tmp_path, cluster, monkeypatch):
+    def broken():
+        return "No module named 'het_ros'"
+
+    broken.__module__ = "__main__"
+    monkeypatch.setattr("het_ros.evaluation.cluster._import_error", broken)
+    with pytest.raises(ValueError, match=r"of the cluster cannot import het_ros \(No module"):
+        carry_out_plan(
+            Plan([STILL], two), Cache(tmp_path), scheduler=cluster.scheduler_address, quiet=True
+        )
+
+
+def test_a_scheduler_that_is_not_there_is_an_error(two, tmp_path, monkeypatch):
+    pytest.importorskip("dask.distributed", reason="clusters need the extra `cluster`")
+    monkeypatch.setattr("het_ros.evaluation.cluster.PATIENCE", 1)
+    with pytest.raises(ValueError, match=r"no Dask scheduler answers at tcp://127.0.0.1:1"):
+        carry_out_plan(
+            Plan([STILL], two), Cache(tmp_path), scheduler="tcp://127.0.0.1:1", quiet=True
+        )
