@@ -20,8 +20,8 @@ from rclpy.serialization import deserialize_message, serialize_message
 from tqdm import tqdm
 
 from het_ros.ros.tracker_node import TrackerNode
-from het_ros.tools.bag_messages import COMPRESSED_IMAGE, IMAGE, stamp_of
-from het_ros.tools.bag_reader import BagReader
+from het_ros.tools.bag_messages import stamp_of
+from het_ros.tools.bag_reader import BagReader, header_stamp
 from het_ros.tools.bag_writer import BagWriter
 from het_ros.tools.interrupt import StopRequest
 from het_ros.tools.make_bag import parse_box
@@ -30,6 +30,7 @@ from het_ros.tools.outputs import DEFAULT_TRACKER, OUTPUT_TYPES
 from het_ros.tools.player import timeline
 from het_ros.tools.report import ResultsFolder, write_report
 from het_ros.tools.summary import Summary
+from het_ros.tools.tracker_arguments import tracker_arguments
 from het_ros.tracking.box import Box
 
 EXAMPLE = """example:
@@ -59,10 +60,7 @@ def replay(
         BagError: the bag cannot be replayed.
     """
     folder.clear()
-    transport = "compressed" if bag.compressed else "raw"
-    arguments = ["--ros-args", "-p", f"image_transport:={transport}"]
-    for parameter in parameters:
-        arguments += ["-p", parameter]
+    arguments = tracker_arguments(bag, parameters)
     # Nobody outside is to hear or disturb a replay.
     os.environ["ROS_AUTOMATIC_DISCOVERY_RANGE"] = "OFF"
     context = Context()
@@ -93,21 +91,22 @@ def _recording_tap(recording: BagWriter) -> Any:
 
 
 def _feed(bag: BagReader, node: TrackerNode, init: Box | None, stop: StopRequest) -> list[int]:
-    """Hand every image and box to the node; return the images' stamps, ns."""
+    """Hand every message to whom it would reach; return the images' stamps, ns.
+
+    Without an executor the node does all its work within the call, so that nothing waits.
+    """
     stamps: list[int] = []
-    classes = {kind: message_class(kind) for kind in (IMAGE, COMPRESSED_IMAGE)}
+    inputs = {subscription.topic_name: subscription for subscription in node.subscriptions}
     with tqdm(total=bag.frames, desc="replay", unit="frame", delay=2) as progress:
         for recorded in timeline(bag, init):
             if stop:
                 break
+            if recorded.topic in inputs:
+                message = deserialize_message(recorded.cdr, message_class(recorded.kind))
+                inputs[recorded.topic].callback(message)
             if recorded.topic == bag.image_topic:
-                image = deserialize_message(recorded.cdr, classes[recorded.kind])
-                node.on_image(image)
-                stamps.append(stamp_of(image))
+                stamps.append(header_stamp(recorded.cdr))
                 progress.update()
-            elif recorded.topic.endswith("/init_box"):
-                box = deserialize_message(recorded.cdr, message_class(recorded.kind))
-                node.on_init_box(box)
     return stamps
 
 

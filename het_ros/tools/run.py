@@ -21,6 +21,7 @@ from het_ros.tools.play import play
 from het_ros.tools.player import NobodyListensError
 from het_ros.tools.report import ResultsFolder, remove_bag, write_report
 from het_ros.tools.summary import Summary
+from het_ros.tools.tracker_arguments import tracker_arguments
 from het_ros.tools.tracker_process import (
     TrackerProcess,
     TrackerProcessError,
@@ -72,24 +73,11 @@ def run(
     log = folder.path / "tracker.log"
     folder.clear()
     with StopRequest() as stop:
-        with TrackerProcess(executable, _arguments(bag, parameters), log) as tracker:
+        with TrackerProcess(executable, tracker_arguments(bag, parameters), log) as tracker:
             stamps = play(
                 bag, folder.bag, stop, rate=rate, init=init, wait=START_UP, alive=tracker.check
             )
         return write_report(bag, stamps, folder, name=name), not stop
-
-
-def _arguments(bag: BagReader, parameters: Sequence[str]) -> list[str]:
-    """Let the tracker read the bag's images, whatever their topic and kind."""
-    transport, default = ("raw", "/image")
-    if bag.compressed:
-        transport, default = ("compressed", "/image/compressed")
-    arguments = ["--ros-args", "-p", f"image_transport:={transport}"]
-    if bag.image_topic not in ("", default):
-        arguments += ["-r", f"{default}:={bag.image_topic}"]
-    for parameter in parameters:
-        arguments += ["-p", parameter]
-    return arguments
 
 
 def _warnings(log: Path) -> list[str]:

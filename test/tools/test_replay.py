@@ -104,3 +104,13 @@ def test_ctrl_c_leaves_what_was_answered(short_bag, tmp_path, monkeypatch):
     with av.open(str(tmp_path / "track.mp4")) as video:
         assert sum(1 for _ in video.decode(video=0)) == 10
     assert (tmp_path / "track.png").exists()
+
+
+def test_images_on_any_topic_reach_the_node(short_bag, tmp_path):
+    with BagReader(short_bag) as bag, BagWriter(tmp_path / "robot") as robot:
+        for recorded in bag.recorded():
+            topic = recorded.topic.replace("/image/compressed", "/front/image_rect")
+            robot.write_cdr(topic, recorded.kind, recorded.cdr, recorded.time)
+    assert main([str(tmp_path / "robot"), "--out", str(tmp_path / "out")]) == 0
+    rows = read_csv(tmp_path / "out" / "track.csv")
+    assert all(row.state is State.TRACKING for row in rows[:5])
