@@ -19,7 +19,8 @@ def overlaps(boxes: Floats, truth: Floats) -> Floats:
     high = np.minimum(boxes[:, :2] + boxes[:, 2:], truth[:, :2] + truth[:, 2:])
     shared = np.clip(high - low, 0, None).prod(axis=1)
     union = boxes[:, 2:].prod(axis=1) + truth[:, 2:].prod(axis=1) - shared
-    return np.asarray(shared / union)
+    # Rounding would lift a perfect overlap over the threshold 1 now and then.
+    return np.asarray(np.minimum(shared / union, 1.0))
 
 
 def centre_errors(boxes: Floats, truth: Floats) -> Floats:
