@@ -34,6 +34,7 @@ class Frame:
             image. None while the target is beside or behind the camera.
         visible: the part of the silhouette that the image shows, 0..1.
         mask: (H, W) uint8, 255 where the image shows the target.
+        others: boxes, px, of the other figures that reach into the image, hidden or not.
         camera: from where it was taken.
     """
 
@@ -43,6 +44,7 @@ class Frame:
     box: Box | None
     visible: float
     mask: np.ndarray
+    others: tuple[Box, ...]
     camera: CameraState
 
 
@@ -113,7 +115,8 @@ class Scene:
         """The street at a time, s, seen by that camera (by default the story's own)."""
         camera = camera or self.camera_at(t)
         target = self._target.draw(t, camera, self.lens)
-        pieces = self._pieces(target, t, camera)
+        others = self._others(t, camera)
+        pieces = self._pieces([target, *others], camera)
         image = np.empty((self.lens.height, self.lens.width, 3), np.uint8)
         self._street.draw_far(image, camera)
         self._cast_shadows(image, [self._target, *self._passers], t, camera)
@@ -123,15 +126,20 @@ class Scene:
         return Frame(
             index=index, stamp=t, image=self._sensor.expose(image, t, camera, self.brightness(t)),
             box=target.box if target else None, visible=visible,
-            mask=np.where(mask >= 128, np.uint8(255), np.uint8(0)), camera=camera,
+            mask=np.where(mask >= 128, np.uint8(255), np.uint8(0)),
+            others=tuple(other.box for other in others), camera=camera,
         )  # fmt: skip
 
-    def _pieces(self, target: Drawing | None, t: float, camera: CameraState) -> list[Piece]:
+    def _others(self, t: float, camera: CameraState) -> list[Drawing]:
+        near = (p for p in self._passers if p.in_image(t, camera, self.lens))
+        drawings = (passer.draw(t, camera, self.lens) for passer in near)
+        size = self.lens.width, self.lens.height
+        return [d for d in drawings if d is not None and d.box.touches_image(*size)]
+
+    def _pieces(self, people: list[Drawing | None], camera: CameraState) -> list[Piece]:
         """All cut-outs that may reach into the image, the farthest first."""
-        pieces: list[Piece] = self._street.things(camera)
-        passers = [p for p in self._passers if p.in_image(t, camera, self.lens)]
-        drawings = [target, *(p.draw(t, camera, self.lens) for p in passers)]
-        pieces += [d.piece for d in drawings if d is not None]
+        pieces = self._street.things(camera)
+        pieces += [drawing.piece for drawing in people if drawing is not None]
         return sorted(pieces, key=lambda piece: -piece.depth)
 
     def _seen(self, target: Drawing | None, pieces: list[Piece]) -> tuple[np.ndarray, float]:
@@ -184,7 +192,8 @@ class Scene:
             t = index / self.config.rate
             camera = self.camera_at(t)
             target = self._target.draw(t, camera, self.lens)
-            seen[index] = self._seen(target, self._pieces(target, t, camera))[1]
+            people = [target, *self._others(t, camera)]
+            seen[index] = self._seen(target, self._pieces(people, camera))[1]
         return seen
 
     def hidden_ranges(self, below: float = 0.02) -> list[tuple[int, int]]:

@@ -82,3 +82,20 @@ def test_a_camera_that_looks_away_has_no_box(scene):
 def test_a_wrong_configuration_is_refused(wrong, names):
     with pytest.raises(ValueError, match=names):
         SceneConfig(**wrong)
+
+
+def test_a_robot_that_turns_to_the_target_keeps_it_through_an_occlusion():
+    """The closed loop: what the last frame showed steers the camera of the next."""
+    scene = Scene(SceneConfig(story="patrol", seed=2, width=160, height=120))
+    camera, turn, visible = CameraState(yaw=-0.4), 0.0, []
+    for step in range(220):
+        frame = scene.render(step / 10, camera)
+        visible.append(frame.visible)
+        turn *= 0.9
+        if frame.visible > 0.2:
+            off = frame.box.centre[0] - scene.lens.width / 2
+            turn = 2 * np.arctan2(off, scene.lens.focal)
+        camera = dataclasses.replace(camera, yaw=camera.yaw + turn / 10, yaw_rate=turn)
+    assert min(visible) < 0.02  # the column did hide it
+    assert np.mean(np.array(visible) > 0.2) > 0.85
+    assert np.mean(visible[-20:]) > 0.95

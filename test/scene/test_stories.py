@@ -42,8 +42,14 @@ def test_the_target_leaves_and_returns(tell):
 
 
 def test_the_lookalike_passes_in_front_without_hiding_all(tell):
-    visible = tell("lookalike_crosses").visibility
-    assert 0.02 < visible.min() < 0.9
+    scene = tell("lookalike_crosses")
+    nearest = int(scene.visibility.argmin())
+    assert 0.02 < scene.visibility[nearest] < 0.9
+    crossing = scene.frame(nearest)
+    (other,) = crossing.others
+    assert other.h > crossing.box.h
+    assert other.iou(crossing.box) > 0.2
+    assert scene.frame(len(scene) - 1).others == ()
 
 
 def test_the_cloud_takes_half_of_the_light(tell):
