@@ -99,6 +99,9 @@ fuzz: $(BUILT) ## Random and broken input, MINUTES long
 soak: $(BUILT) ## The node at 30 frames/s, MINUTES long: memory, latency, file descriptors
 	@$(WORKSPACE); python -m het_ros.tools.soak --minutes $(MINUTES)
 
+docs: $(BUILT) ## Write what is generated from the parameter tables
+	@$(WORKSPACE); python -m het_ros.ros.reference .
+
 format: $(VENV)/.ready ## Format the code
 	$(ROS); ruff check --fix .; ruff format .
 

@@ -9,7 +9,7 @@ ROOT = Path(__file__).parent
 
 # Each executable and the module whose main() it runs.
 COMMANDS = {
-    "tracker": "het_ros.ros.tracker_node",
+    "tracker": "het_ros.ros.tracker",
     "make_bag": "het_ros.tools.make_bag",
     "play": "het_ros.tools.play",
     "replay": "het_ros.tools.replay",

@@ -62,6 +62,10 @@ class Graph:
     def add(self, node):
         """Take a node made with ``context=graph.context``; it is destroyed with the graph."""
         self.executor.add_node(node)
+        return self.keep(node)
+
+    def keep(self, node):
+        """Destroy a node with the graph, but do not spin it."""
         self.nodes.append(node)
         return node
 

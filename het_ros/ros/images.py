@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from sensor_msgs.msg import CompressedImage, Image
 
 Pixels = NDArray[np.uint8]
+KINDS = {1: np.uint8, 2: np.uint16, 4: np.float32}
 
 
 class ImageError(ValueError):
@@ -24,7 +25,7 @@ class Layout:
     """How one encoding lies in memory.
 
     Attributes:
-        itemsize: bytes a channel, 1 or 2.
+        itemsize: bytes a channel: 1 or 2 of a whole number, 4 of a float.
         channels: interleaved channels a pixel; 1 leaves out the last axis.
         colour: cv2 code that turns it into BGR, or None where nothing is to be done.
         plane_rows: rows of data for each two image rows: 2, or 3 where chroma follows below.
@@ -86,9 +87,9 @@ def to_array(message: Image, white: int = 65535) -> Pixels:
         raise ImageError(
             f"the encoding {message.encoding!r} is unknown: send one of {', '.join(ENCODINGS)}"
         )
-    pixels = _view(message, layout)
+    pixels = view(message, layout)
     if layout.itemsize == 2:
-        pixels = _to_8_bit(pixels, bool(message.is_bigendian), white)
+        pixels = cv2.convertScaleAbs(pixels.astype(np.uint16), alpha=255.0 / white)
     return _to_bgr(pixels, layout, message)
 
 
@@ -123,8 +124,12 @@ def _has_jpeg_end(data: Pixels) -> bool:
     return data[-1024:].tobytes().find(b"\xff\xd9") >= 0
 
 
-def _view(message: Image, layout: Layout) -> NDArray[np.generic]:
-    """The data as ``(rows, W[, channels])`` without a copy, once it is known to be all there."""
+def view(message: Image, layout: Layout) -> NDArray[np.generic]:
+    """The data as ``(rows, W[, channels])``, in its own byte order and without a copy.
+
+    Raises:
+        ImageError: no pixels, a step too short or data too short.
+    """
     height, width, step = message.height, message.width, message.step
     if height == 0 or width == 0:
         raise ImageError(f"the image is {width} x {height} px: there is nothing in it")
@@ -146,14 +151,8 @@ def _view(message: Image, layout: Layout) -> NDArray[np.generic]:
     strides: tuple[int, ...] = (step, pixel)
     if layout.channels > 1:
         shape, strides = (*shape, layout.channels), (*strides, layout.itemsize)
-    kind = np.uint8 if layout.itemsize == 1 else np.uint16
+    kind = np.dtype(KINDS[layout.itemsize]).newbyteorder(">" if message.is_bigendian else "<")
     return np.ndarray(shape, kind, buffer=flat, strides=strides)
-
-
-def _to_8_bit(pixels: NDArray[np.generic], big_endian: bool, white: int) -> Pixels:
-    """16-bit pixels, 0..white to 0..255, rounded to the nearest."""
-    native = pixels.view(pixels.dtype.newbyteorder(">" if big_endian else "<")).astype(np.uint16)
-    return cv2.convertScaleAbs(native, alpha=255.0 / white)
 
 
 def _to_bgr(pixels: NDArray[np.generic], layout: Layout, message: Image) -> Pixels:

@@ -50,6 +50,52 @@ class NodeConfig:
         low=0.0,
         high=3600.0,
     )
+    ring_seconds: float = parameter(
+        1.0,
+        "how long images are kept for boxes that come late; 0 keeps the newest only",
+        unit="s",
+        low=0.0,
+        high=60.0,
+    )
+    ring_megabytes: float = parameter(
+        200.0,
+        "memory for them; over it the oldest are kept as JPEG, then dropped",
+        unit="MB",
+        low=0.0,
+        high=10000.0,
+    )
+    box_tolerance: float = parameter(
+        0.2,
+        "a box starts on the image nearest to its stamp, if it is as near as this",
+        unit="s",
+        low=0.0,
+        high=10.0,
+    )
+    rectified: bool = parameter(
+        False, "the images are rectified: camera_info's P holds for them and no distortion"
+    )
+    depth_tolerance: float = parameter(
+        0.05,
+        "a depth image is used for an image whose stamp is as near as this",
+        unit="s",
+        low=0.0,
+        high=10.0,
+    )
+    debug_rate: float = parameter(
+        10.0,
+        "most debug images a second; they are drawn only for subscribers",
+        unit="1/s",
+        low=0.1,
+        high=1000.0,
+    )
+    diagnostics_period: float = parameter(
+        1.0,
+        "time between two messages on /diagnostics",
+        unit="s",
+        low=0.1,
+        high=60.0,
+        read_only=True,
+    )
     image_timeout: float = parameter(
         5.0,
         "no image for this long after the start: the log says what is waited for; 0: never",

@@ -60,7 +60,7 @@ class TrackingSession:
         if not box.touches_image(width, height):
             raise ValueError(f"{box} lies wholly outside the image of {width} x {height} px")
         tracker = HierarchicalEnsembleTracker(self.config)
-        estimate = tracker.init(image, box)
+        estimate = _finite(tracker.init(image, box))
         self._tracker, self._shape, self._source = tracker, image.shape, source
         self._stamp = self._seen = stamp
         self._take(estimate)
@@ -75,7 +75,7 @@ class TrackingSession:
         if broken:
             self.lose(broken)
             return None
-        estimate = self._tracker.update(_with_channels_of(image, self._shape), gap)
+        estimate = _finite(self._tracker.update(_with_channels_of(image, self._shape), gap))
         self._stamp = stamp
         if estimate.state is State.TRACKING:
             self._seen = stamp
@@ -112,6 +112,18 @@ class TrackingSession:
         self.state = estimate.state
         self.age = (self._stamp - self._seen) / SECOND
         self.reason = "" if self.state is State.TRACKING else f"not seen for {self.age:.2f} s"
+
+
+def _finite(estimate: Estimate) -> Estimate:
+    """The estimate, if there is no NaN in it that a robot could act on.
+
+    Raises:
+        FloatingPointError: there is.
+    """
+    numbers = (*estimate.velocity, estimate.score, *np.ravel(estimate.covariance))
+    if not np.all(np.isfinite(numbers)):
+        raise FloatingPointError(f"an estimate that is no number: {estimate}")
+    return estimate
 
 
 def _with_channels_of(image: Pixels, shape: tuple[int, ...]) -> Pixels:

@@ -1,34 +1,31 @@
-"""The node ``tracker``: one box on a camera stream in, box, velocity and status out."""
+"""The node ``tracker``: one box on a camera stream in; box, velocity, status and more out."""
 
 from __future__ import annotations
 
-import argparse
-import sys
 import time
 from collections.abc import Callable
-from dataclasses import dataclass
+from copy import copy
+from functools import wraps
 from typing import Any
 
-import rclpy
 from diagnostic_msgs.msg import DiagnosticArray
-from geometry_msgs.msg import (
-    PolygonStamped,
-    PoseWithCovarianceStamped,
-    TwistWithCovarianceStamped,
-)
+from geometry_msgs.msg import PolygonStamped
+from rcl_interfaces.msg import SetParametersResult
 from rclpy.clock import Clock, ClockType
-from rclpy.exceptions import ParameterException
-from rclpy.executors import ExternalShutdownException, SingleThreadedExecutor
 from rclpy.lifecycle import LifecycleNode, LifecycleState, TransitionCallbackReturn
+from rclpy.parameter import Parameter
 from rclpy.qos import QoSProfile, ReliabilityPolicy
 from rclpy.qos_overriding_options import QoSOverridingOptions
-from rclpy.utilities import remove_ros_args
-from sensor_msgs.msg import CompressedImage, Image, RegionOfInterest
+from sensor_msgs.msg import CameraInfo, CompressedImage, Image, RegionOfInterest
 from std_msgs.msg import Header
 from std_srvs.srv import SetBool, Trigger
 
+from het_ros.ros.debug_image import debug_message, drawn
+from het_ros.ros.detections import detections_message, vision_msgs
+from het_ros.ros.diagnostics import Health
+from het_ros.ros.frames import Frame, ImageMessage
 from het_ros.ros.hints import Hints
-from het_ros.ros.images import ImageError, Pixels, array_of
+from het_ros.ros.images import ImageError, array_of
 from het_ros.ros.messages import (
     BoxError,
     box_from_polygon,
@@ -38,52 +35,39 @@ from het_ros.ros.messages import (
     stamp_ns,
     twist_from_estimate,
 )
+from het_ros.ros.outputs import OUTPUTS, RELIABLE, Outputs, Tap
 from het_ros.ros.parameters import NodeConfig, declare, read
-from het_ros.ros.session import TrackingSession
-from het_ros.ros.stamps import SECOND, Order, StampGate
+from het_ros.ros.pursuit import Outcome, Pursuit
+from het_ros.ros.quality import explain_silence, subscription_events
+from het_ros.ros.space import Space
+from het_ros.ros.stamps import SECOND
 from het_ros.ros.status import Status, status_message
 from het_ros.tracking.box import Box
 from het_ros.tracking.config import TrackerConfig
-from het_ros.tracking.estimate import Estimate, State
-
-ImageMessage = Image | CompressedImage
-Tap = Callable[[str, Any], None]
+from het_ros.tracking.estimate import State
 
 # Depth 1: with a deeper queue a busy node works on old images, and latency grows by the depth.
 NEWEST_ONLY = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
-RELIABLE = QoSProfile(depth=10, reliability=ReliabilityPolicy.RELIABLE)
-OUTPUTS = {
-    "box": PolygonStamped,
-    "pose": PoseWithCovarianceStamped,
-    "velocity": TwistWithCovarianceStamped,
-    "status": DiagnosticArray,
-}
+SEEN = (State.TRACKING, State.COASTING)
 
 
-@dataclass(frozen=True)
-class Frame:
-    """One image as it came in: its message, its stamp (ns) and when it arrived (s, monotonic)."""
+def _told(transition: Callable[..., TransitionCallbackReturn]) -> Callable[..., Any]:
+    """A transition that tells why it failed; rclpy swallows what is raised in one."""
 
-    message: ImageMessage
-    stamp: int
-    arrival: float
+    @wraps(transition)
+    def telling(self: TrackerNode, state: LifecycleState) -> TransitionCallbackReturn:
+        try:
+            return transition(self, state)
+        except Exception as error:
+            self._failure = error
+            self.get_logger().fatal(f"{transition.__name__} failed: {error!r}")
+            return TransitionCallbackReturn.FAILURE
 
-    @property
-    def header(self) -> Header:
-        """The image's header, which every output of this frame carries."""
-        return self.message.header
-
-
-@dataclass(frozen=True)
-class Request:
-    """A box that waits for the image it was drawn on; stamp 0 takes any image."""
-
-    box: Box
-    stamp: int
+    return telling
 
 
 class TrackerNode(LifecycleNode):
-    """Follows one target; all the tracking is in :class:`TrackingSession`.
+    """Follows one target; what is done with frames and boxes is in :class:`Pursuit`.
 
     With ``autostart`` (the default) the node is active when its constructor returns. Without an
     executor it can be driven by hand, deterministically and in one thread: call
@@ -93,8 +77,8 @@ class TrackerNode(LifecycleNode):
 
     Args:
         name: node name, first part of the output topics.
-        tap: called as ``tap(topic, message)`` for everything published, subscribers or not;
-            topic is "box", "pose", "velocity" or "status".
+        tap: called as ``tap(topic, message)`` for everything published, subscribers or not (but
+            "debug_image", which is drawn for subscribers only); topic is a key of ``OUTPUTS``.
         config: the tracker's defaults, under the parameters that are set.
         **options: of rclpy's Node (context, namespace, parameter_overrides, cli_args...).
     """
@@ -113,44 +97,56 @@ class TrackerNode(LifecycleNode):
         declare(self, NodeConfig())
         declare(self, config or TrackerConfig())
         self._settings = read(self, NodeConfig)
-        self._session = TrackingSession(read(self, TrackerConfig), self._settings.max_gap)
-        self._gate = StampGate(self._settings.jump_back)
-        self._newest: Frame | None = None
-        self._request: Request | None = None
+        self._pursuit = self._new_pursuit()
+        self._space = Space(self._settings, self._hints)
+        self._health = Health()
         self._active = False
         self._enabled = True
-        self._entities: list[tuple[Callable[[Any], Any], Any]] = []
-        self._outputs: dict[str, Any] = {}
+        self._drawn = 0
+        self._inputs: list[tuple[Callable[[Any], Any], Any]] = []
+        self._outputs = Outputs(self, {}, None)
+        self.add_on_set_parameters_callback(self._check_parameters)
+        self.add_post_set_parameters_callback(self._apply_parameters)
+        self._failure: Exception | None = None
         if self._settings.autostart:
-            self.trigger_configure()
-            self.trigger_activate()
+            for transition in (self.trigger_configure, self.trigger_activate):
+                if transition() is not TransitionCallbackReturn.SUCCESS:
+                    raise RuntimeError(f"the node did not start: {self._failure!r}")
 
     @property
     def state(self) -> State:
         """Where the track stands."""
-        return self._session.state
+        return self._pursuit.session.state
 
     @property
     def reason(self) -> str:
         """Why :attr:`state` is not TRACKING; empty while it is."""
-        return self._session.reason
+        return self._pursuit.session.reason
 
     # Lifecycle ------------------------------------------------------------------------------
 
+    @_told
     def on_configure(self, state: LifecycleState) -> TransitionCallbackReturn:
-        """Make the outputs and the services, on a stream that nothing is known of."""
-        self._gate = StampGate(self._settings.jump_back)
-        for topic, kind in OUTPUTS.items():
-            self._outputs[topic] = self.create_publisher(
-                kind,
-                f"~/{topic}",
-                RELIABLE,
-                qos_overriding_options=QoSOverridingOptions.with_default_policies(),
-            )
-        self._reset_service = self.create_service(Trigger, "~/reset", self._on_reset)
-        self._enable_service = self.create_service(SetBool, "~/enable", self._on_enable)
+        """Make outputs and services, on a stream that nothing is known of."""
+        self._pursuit = self._new_pursuit()
+        kinds = dict(OUTPUTS)
+        if vision_msgs is None:
+            self.get_logger().debug("vision_msgs is not installed: there is no ~/detections")
+        else:
+            kinds["detections"] = vision_msgs.Detection2DArray
+        self._outputs = Outputs(self, kinds, self._tap)
+        self._diagnostics = self.create_publisher(DiagnosticArray, "/diagnostics", RELIABLE)
+        self._services = [
+            self.create_service(Trigger, "~/reset", self._on_reset),
+            self.create_service(SetBool, "~/enable", self._on_enable),
+        ]
+        steady = Clock(clock_type=ClockType.STEADY_TIME)  # runs under use_sim_time as well
+        period = self._settings.diagnostics_period
+        self._reporter = self.create_timer(period, self._report, clock=steady)
+        self._wake = self.create_guard_condition(self._work)
         return super().on_configure(state)
 
+    @_told
     def on_activate(self, state: LifecycleState) -> TransitionCallbackReturn:
         """Subscribe to the inputs."""
         compressed = self._settings.image_transport == "compressed"
@@ -159,30 +155,34 @@ class TrackerNode(LifecycleNode):
         self._image_input = self._subscribe(kind, topic, self.on_image, NEWEST_ONLY)
         self._subscribe(PolygonStamped, "~/init_box", self.on_init_box, RELIABLE)
         self._subscribe(RegionOfInterest, "~/init_roi", self.on_init_roi, RELIABLE)
+        self._subscribe(CameraInfo, "camera_info", self._space.on_camera_info, NEWEST_ONLY)
+        self._subscribe(Image, "depth", self._space.on_depth, NEWEST_ONLY)
         if self._settings.image_timeout > 0:
-            steady = Clock(clock_type=ClockType.STEADY_TIME)  # runs under use_sim_time as well
-            timer = self.create_timer(self._settings.image_timeout, self._on_silence, clock=steady)
-            self._entities.append((self.destroy_timer, timer))
+            steady = Clock(clock_type=ClockType.STEADY_TIME)
+            self._silence = self.create_timer(
+                self._settings.image_timeout, self._on_silence, clock=steady
+            )
+            self._inputs.append((self.destroy_timer, self._silence))
         self._active = True
         return super().on_activate(state)
 
     def on_deactivate(self, state: LifecycleState) -> TransitionCallbackReturn:
         """Leave the inputs; the track is kept."""
         self._active = False
-        while self._entities:
-            destroy, entity = self._entities.pop()
+        while self._inputs:
+            destroy, entity = self._inputs.pop()
             destroy(entity)
         return super().on_deactivate(state)
 
     def on_cleanup(self, state: LifecycleState) -> TransitionCallbackReturn:
-        """Drop the track and take the outputs and services away."""
-        self._session.drop("waiting for a box")
-        self._newest = self._request = None
-        for publisher in self._outputs.values():
-            self.destroy_publisher(publisher)
-        self._outputs.clear()
-        self.destroy_service(self._reset_service)
-        self.destroy_service(self._enable_service)
+        """Drop the track and take outputs and services away."""
+        self._pursuit.drop("waiting for a box")
+        self._outputs.destroy()
+        self.destroy_publisher(self._diagnostics)
+        self.destroy_timer(self._reporter)
+        self.destroy_guard_condition(self._wake)
+        while self._services:
+            self.destroy_service(self._services.pop())
         return super().on_cleanup(state)
 
     def on_shutdown(self, state: LifecycleState) -> TransitionCallbackReturn:
@@ -190,15 +190,19 @@ class TrackerNode(LifecycleNode):
         self.on_deactivate(state)
         return super().on_shutdown(state)
 
+    def _new_pursuit(self) -> Pursuit:
+        return Pursuit(read(self, TrackerConfig), self._settings, self.get_logger())
+
     def _subscribe(self, kind: Any, topic: str, callback: Any, qos: QoSProfile) -> Any:
         subscription = self.create_subscription(
             kind,
             topic,
             callback,
-            qos,
+            copy(qos),  # overrides are written into it
+            event_callbacks=subscription_events(self, topic),
             qos_overriding_options=QoSOverridingOptions.with_default_policies(),
         )
-        self._entities.append((self.destroy_subscription, subscription))
+        self._inputs.append((self.destroy_subscription, subscription))
         return subscription
 
     # Inputs ---------------------------------------------------------------------------------
@@ -206,94 +210,42 @@ class TrackerNode(LifecycleNode):
     def on_image(self, message: ImageMessage) -> None:
         """Process one image: start the box that waits for it, or follow the track, and publish."""
         arrival = time.monotonic()
-        if not (self._active and self._enabled):
-            return
-        frame = Frame(message, self._stamp_of(message.header), arrival)
-        order = self._gate.take(frame.stamp)
-        if order in (Order.DUPLICATE, Order.LATE):
-            return
-        if order is Order.JUMP_BACK:
-            self._on_jump_back()
-        try:
-            pixels = array_of(message, self._settings.white_level)
-        except ImageError as error:
-            self._hints.once(
-                f"image {getattr(message, 'encoding', 'compressed')}", f"image refused: {error}"
-            )
-            return
-        self._newest = frame
-        self._publish(frame, self._started(frame, pixels) or self._followed(frame, pixels))
+        if self._active and self._enabled:
+            self._pursuit.on_frame(Frame(message, self._stamp_of(message.header), arrival))
+            self._work()
 
     def on_init_box(self, message: PolygonStamped) -> None:
         """Start or restart the track on the polygon's bounds, on the image of its stamp."""
-        try:
-            self._on_box(box_from_polygon(message), stamp_ns(message.header))
-        except BoxError as error:
-            self._refuse(error)
+        self._on_box(lambda: box_from_polygon(message), stamp_ns(message.header))
 
     def on_init_roi(self, message: RegionOfInterest) -> None:
         """Start or restart the track on a region of the newest image."""
+        self._on_box(lambda: box_from_roi(message), 0)
+
+    def _on_box(self, box: Callable[[], Box], stamp: int) -> None:
         try:
-            self._on_box(box_from_roi(message), 0)
+            if not (self._active and self._enabled):
+                raise BoxError("the node is disabled or not active")
+            outcome = self._pursuit.on_box(box(), stamp)
         except BoxError as error:
-            self._refuse(error)
-
-    def _on_box(self, box: Box, stamp: int) -> None:
-        """Start on the newest image, or wait for the image that the stamp names."""
-        if not (self._active and self._enabled):
-            self._refuse("the node is disabled or not active")
+            self._pursuit.refuse(error)
             return
-        newest = self._newest
-        if newest is None or stamp > newest.stamp:
-            self._request = Request(box, stamp)
-            if newest is None:
-                self._hints.once(
-                    "early box", "a box came before any image: it starts on the first one"
-                )
-            return
-        if stamp and newest.stamp - stamp > self._settings.max_gap * SECOND:
-            self._refuse(
-                f"it was drawn {(newest.stamp - stamp) / SECOND:.2f} s before the newest image"
-            )
-            return
-        self._request = Request(box, 0)
-        pixels = array_of(newest.message, self._settings.white_level)
-        estimate = self._started(newest, pixels)
-        if estimate is not None:
-            self._publish(newest, estimate)
+        if outcome is not None and outcome.published:
+            self._publish(outcome)
+        if self._pursuit.busy:
+            self._work()
 
-    def _started(self, frame: Frame, pixels: Pixels) -> Estimate | None:
-        """Start the box that waits, if it waits for this frame; None where nothing started."""
-        request = self._request
-        if request is None or request.stamp > frame.stamp:
-            return None
-        self._request = None
-        try:
-            estimate = self._session.start(pixels, frame.stamp, request.box, frame.header.frame_id)
-        except ValueError as error:
-            self._refuse(error)
-            return None
-        self.get_logger().info(f"tracking started on {request.box}")
-        return estimate
-
-    def _followed(self, frame: Frame, pixels: Pixels) -> Estimate | None:
-        """Follow the track into this frame; a fault inside ends the track, not the node."""
-        before = self._session.state
-        try:
-            estimate = self._session.follow(pixels, frame.stamp, frame.header.frame_id)
-        except Exception as error:  # a robot must hear LOST, whatever went wrong in here
-            self.get_logger().error(f"the tracker failed on an image: {error!r}")
-            self._session.lose(f"internal error: {error!r}")
-            return None
-        if self._session.state is State.LOST and before is not State.LOST:
-            self.get_logger().warning(f"target lost: {self._session.reason}")
-        return estimate
-
-    def _on_jump_back(self) -> None:
-        """Time went back: nothing that was learnt of motion holds, and old boxes are void."""
-        self.get_logger().warning("the stamps jumped back (a bag in a loop?): the track is reset")
-        self._session.drop("time jumped back")
-        self._newest = None
+    def _work(self) -> None:
+        """Process the next frame; with an executor, let images in before the one after it."""
+        spun = self.executor is not None
+        while self._pursuit.busy:
+            outcome = self._pursuit.step(hurry=spun)
+            if outcome is not None and outcome.published:
+                self._publish(outcome)
+            if spun:
+                if self._pursuit.busy:
+                    self._wake.trigger()
+                return
 
     def _stamp_of(self, header: Header) -> int:
         """The image's stamp, or the time of arrival where a driver leaves it at zero, ns."""
@@ -305,51 +257,89 @@ class TrackerNode(LifecycleNode):
             return int(self.get_clock().now().nanoseconds)
         return stamp
 
-    def _refuse(self, why: object) -> None:
-        goes_on = "; the running track goes on" if self._session.running else ""
-        self.get_logger().warning(f"init box refused: {why}{goes_on}")
-
     # Outputs --------------------------------------------------------------------------------
 
-    def _publish(self, frame: Frame, estimate: Estimate | None) -> None:
-        """Publish an estimate and the status; in LOST and without a track the status alone."""
-        header = frame.header
-        if estimate is not None and estimate.state in (State.TRACKING, State.COASTING):
-            self._send("box", lambda: polygon_from_box(estimate.box, header))
-            self._send("pose", lambda: pose_from_estimate(estimate, header))
-            self._send("velocity", lambda: twist_from_estimate(estimate, header))
-        self._send("status", lambda: self._status(frame, estimate))
+    def _publish(self, outcome: Outcome) -> None:
+        """Publish an outcome; in LOST and without a track the status alone."""
+        header, estimate, pixels = outcome.frame.header, outcome.estimate, outcome.pixels
+        send = self._outputs.send
+        if estimate is not None and pixels is not None and estimate.state in SEEN:
+            box, size = estimate.box, (pixels.shape[1], pixels.shape[0])
+            send("box", lambda: polygon_from_box(box, header))
+            send("pose", lambda: pose_from_estimate(estimate, header))
+            send("velocity", lambda: twist_from_estimate(estimate, header))
+            send("bearing", lambda: self._space.bearing(box, size, header))
+            if estimate.state is State.TRACKING:  # else the depth is of what hides the target
+                send("target_pose", lambda: self._space.pose(box, size, header))
+            if "detections" in self._outputs:
+                track = self._pursuit.track
+                send("detections", lambda: detections_message(estimate, track, header))
+        send("status", lambda: self._status(outcome))
+        self._health.processed(time.monotonic() - outcome.frame.arrival)
+        self._draw(outcome)
 
-    def _status(self, frame: Frame, estimate: Estimate | None) -> DiagnosticArray:
-        session = self._session
+    def _status(self, outcome: Outcome) -> DiagnosticArray:
+        session = self._pursuit.session
         status = Status(
             state=session.state,
-            score=0.0 if estimate is None else float(estimate.score),
-            latency=time.monotonic() - frame.arrival,
+            score=0.0 if outcome.estimate is None else float(outcome.estimate.score),
+            latency=time.monotonic() - outcome.frame.arrival,
             age=session.age,
             reason=session.reason,
         )
-        return status_message(status, self.get_fully_qualified_name(), frame.header)
+        return status_message(status, self.get_fully_qualified_name(), outcome.frame.header)
 
-    def _send(self, topic: str, make: Callable[[], Any]) -> None:
-        """Publish on an output what ``make`` makes; nothing is made while nobody listens."""
-        listened_to = self._outputs[topic].get_subscription_count() > 0
-        if not listened_to and self._tap is None:
+    def _draw(self, outcome: Outcome) -> None:
+        """Draw the debug image for subscribers, ``debug_rate`` times a second at most."""
+        stamp = outcome.frame.stamp
+        early = 0 <= stamp - self._drawn < SECOND / self._settings.debug_rate
+        if early or not self._outputs.heard("debug_image"):
             return
-        message = make()
-        if self._tap is not None:
-            self._tap(topic, message)
-        if listened_to:
-            self._outputs[topic].publish(message)
+        self._drawn = stamp
+        pixels = outcome.pixels
+        if pixels is None:
+            try:
+                pixels = array_of(outcome.frame.message, self._settings.white_level)
+            except ImageError:
+                return
+        image = drawn(pixels, outcome.estimate, self.state, self.reason)
+        self._outputs.send("debug_image", lambda: debug_message(image, outcome.frame.header))
 
-    # Services and hints ---------------------------------------------------------------------
+    def _report(self) -> None:
+        """Publish on /diagnostics."""
+        self._diagnostics.publish(
+            self._health.report(
+                self.get_fully_qualified_name(),
+                self.get_clock().now().to_msg(),
+                self._settings.diagnostics_period,
+                self._pursuit.counts,
+                self.state.value,
+                self._active and self._enabled,
+            )
+        )
+
+    # Parameters, services, hints ------------------------------------------------------------
+
+    def _check_parameters(self, parameters: list[Parameter]) -> SetParametersResult:
+        """Refuse values that do not fit, each alone or with the others, with the reason."""
+        changed = {parameter.name: parameter.value for parameter in parameters}
+        try:
+            read(self, NodeConfig, **changed)
+            read(self, TrackerConfig, **changed)
+        except ValueError as error:
+            return SetParametersResult(successful=False, reason=str(error))
+        return SetParametersResult(successful=True)
+
+    def _apply_parameters(self, _: list[Parameter]) -> None:
+        """Take new values between two frames: the node's at once, the tracker's with a new box."""
+        self._settings = self._space.settings = read(self, NodeConfig)
+        self._pursuit.configure(read(self, TrackerConfig), self._settings)
 
     def _on_reset(self, _: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
         """Drop the track and any box that waits: IDLE."""
         response.success = True
-        response.message = f"was {self._session.state.value}, now IDLE"
-        self._session.drop("reset: waiting for a box")
-        self._request = None
+        response.message = f"was {self.state.value}, now IDLE"
+        self._pursuit.drop("reset: waiting for a box")
         return response
 
     def _on_enable(self, request: SetBool.Request, response: SetBool.Response) -> SetBool.Response:
@@ -361,53 +351,7 @@ class TrackerNode(LifecycleNode):
 
     def _on_silence(self) -> None:
         """Once after the start: if no image came, say what is waited for."""
-        for entry in self._entities:
-            if entry[0] == self.destroy_timer:
-                entry[1].cancel()
-        if self._gate.newest is not None or not self._enabled:
-            return
-        topic = self._image_input.topic_name
-        publishers = self.get_publishers_info_by_topic(topic)
-        reliability = self._image_input.qos_profile.reliability.name.lower()
-        found = ", ".join(
-            f"{p.node_name} ({p.topic_type}, {p.qos_profile.reliability.name.lower()})"
-            for p in publishers
-        )
-        self._hints.once(
-            "silence",
-            f"no image after {self._settings.image_timeout:g} s: waiting on {topic} "
-            f"({self._image_input.msg_type.__name__}, {reliability}); its publishers: "
-            f"{found or 'none, remap with -r image:=/your/camera/image_raw'}",
-        )
-
-
-def main(args: list[str] | None = None) -> int:
-    """Run the node until it is told to stop; 0 on a clean stop, 2 on a wrong parameter."""
-    argv = sys.argv if args is None else ["tracker", *args]
-    parser = argparse.ArgumentParser(
-        prog="tracker",
-        description="Follow one target on a camera stream.",
-        epilog="example: ros2 run het_ros tracker --ros-args -r image:=/camera/image_raw",
-    )
-    parser.parse_args(remove_ros_args(argv)[1:])
-    node = None
-    try:
-        rclpy.init(args=argv)
-        node = TrackerNode()
-        executor = SingleThreadedExecutor()
-        executor.add_node(node)
-        executor.spin()
-    except (KeyboardInterrupt, ExternalShutdownException):
-        pass
-    except (ParameterException, ValueError) as error:
-        print(f"tracker: {error}", file=sys.stderr)
-        return 2
-    finally:
-        if node is not None:
-            node.destroy_node()
-        rclpy.try_shutdown()
-    return 0
-
-
-if __name__ == "__main__":
-    sys.exit(main())
+        self._silence.cancel()
+        if not self._pursuit.started and self._enabled:
+            timeout = self._settings.image_timeout
+            self._hints.once("silence", explain_silence(self, self._image_input, timeout))

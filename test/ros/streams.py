@@ -46,7 +46,7 @@ class ByHand:
 
     def __init__(self, graph, **options) -> None:
         self.sent: list[tuple[str, object]] = []
-        self.node = graph.add(
+        self.node = graph.keep(
             TrackerNode(
                 context=graph.context,
                 tap=lambda topic, message: self.sent.append((topic, message)),

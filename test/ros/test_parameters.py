@@ -11,6 +11,8 @@ from het_ros import TrackerConfig
 from het_ros.ros.parameters import NodeConfig, declare, read
 from het_ros.tracking.parameter import parameters_of
 
+from .streams import ByHand, header_at, image_message
+
 TABLES = (TrackerConfig, NodeConfig)
 DECLARED = [(table, declared) for table in TABLES for declared in parameters_of(table)]
 ROS_TYPES = {
@@ -79,3 +81,56 @@ def test_overrides_outside_type_or_range_are_refused(graph, overrides, error):
 def test_a_choice_that_there_is_not_is_refused_when_read(graph):
     with pytest.raises(ValueError, match="raw, compressed"):
         read(node_with(graph, image_transport="smoke"), NodeConfig)
+
+
+@pytest.fixture
+def hand(graph, made_footage):
+    frames, box = made_footage
+    hand = ByHand(graph)
+    hand.image(frames[0], 1.0)
+    hand.box(box)
+    return hand
+
+
+@pytest.mark.parametrize(
+    "name, value, says",
+    [
+        ("max_gap", -1.0, "max_gap"),
+        ("max_gap", "long", "type"),
+        ("seed", -5, "seed"),
+        ("seed", 1.5, "type"),
+        ("positive_radius", 150.0, "positive_radius"),  # fits its range, not the others
+        ("image_transport", "compressed", "read-only"),
+        ("autostart", False, "read-only"),
+    ],
+)
+def test_a_wrong_value_is_refused_with_the_reason_and_changes_nothing(hand, name, value, says):
+    before = hand.node.get_parameter(name).value
+    (result,) = hand.node.set_parameters([RosParameter(name, value=value)])
+    assert not result.successful
+    assert says in result.reason
+    assert hand.node.get_parameter(name).value == before
+
+
+def test_values_that_contradict_each_other_are_refused_together(hand):
+    changes = [RosParameter("weight_low", value=0.8), RosParameter("weight_high", value=0.2)]
+    result = hand.node.set_parameters_atomically(changes)
+    assert not result.successful
+    assert "weight_low" in result.reason
+
+
+def test_node_settings_apply_at_once(hand, made_footage):
+    hand.node.set_parameters([RosParameter("max_gap", value=0.1)])
+    outputs = hand.image(made_footage[0][1], 1.5)
+    assert hand.state_of(outputs) == "LOST"
+    hand.node.set_parameters([RosParameter("jump_back", value=100.0)])
+    assert hand.image(made_footage[0][1], 0.1) == {}  # late now, not a jump
+
+
+def test_tracker_settings_apply_with_the_next_box(hand, made_footage):
+    frames, box = made_footage
+    hand.node.set_parameters([RosParameter("sub_patches", value=4)])
+    hand.node.on_image(image_message(frames[1], header_at(1 + 1 / 30)))
+    assert hand.node._pursuit.session._tracker.config.sub_patches == 11
+    hand.box(box)
+    assert hand.node._pursuit.session._tracker.config.sub_patches == 4

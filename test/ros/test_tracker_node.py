@@ -244,6 +244,7 @@ def call(graph, kind, name, request):
 
 def test_services_reset_and_enable(graph, hand, made_footage):
     frames = started(hand, made_footage)
+    graph.executor.add_node(hand.node)
     graph.add(Camera(context=graph.context))
     answer = call(graph, Trigger, "tracker/reset", Trigger.Request())
     assert answer.success
