@@ -163,7 +163,7 @@ def states(results: Results) -> Table:
                 f"{s['recall']:.3f}",
                 f"{s['f']:.3f}",
                 f"{s['off_target']:.3f}",
-                f"{s['false_lost']} ({s['longest_false_lost']})",
+                f"{s['false_lost']} of {s['visible_frames']} ({s['longest_false_lost']})",
                 f"{s['missed_lost']} of {s['absent_frames']}",
                 f"{s['reacquired']} of {s['reappearances']}",
                 _number(s["reacquisition_frames"], ".0f"),
@@ -181,7 +181,9 @@ def states(results: Results) -> Table:
         tuple(rows),
         "Precision, recall and F of TRACKING as the answer to 'is the target visible?'; off "
         "target: share of TRACKING frames whose box does not touch the visible target; false "
-        "LOST: frames, and the longest row of them; missed LOST: TRACKING while absent; score "
+        "LOST: LOST though it was visible, in all runs together, and the longest row of such "
+        "frames; missed LOST: TRACKING while absent. Where no sequence has an absence, precision "
+        "is 1 for everybody and F says only how often a tracker gave up. Score "
         "error: mean distance from the calibration's diagonal; NIS: 2 is consistent, and 0.95 of "
         "the frames within its 95 % bound.",
     )
