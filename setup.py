@@ -14,6 +14,7 @@ COMMANDS = {
     "play": "het_ros.tools.play",
     "replay": "het_ros.tools.replay",
     "evaluate": "het_ros.evaluation.cli",
+    "follower_example": "het_ros.ros.follower_example",
 }
 
 # What scoring, tables and pictures of `evaluate` and `bench` need beside a cv2.

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import numpy as np
 from geometry_msgs.msg import PoseStamped
 from numpy.typing import NDArray
@@ -11,6 +9,7 @@ from sensor_msgs.msg import Image
 from std_msgs.msg import Header
 
 from het_ros.ros.images import ENCODINGS, ImageError, Layout, view
+from het_ros.ros.stamps import SECOND
 from het_ros.tracking.box import Box
 
 INNER = 0.7  # this much of the box's width and height is looked at: the rest is background
@@ -18,6 +17,8 @@ MOST_SAMPLES = 4096
 LEAST_VALID = 0.1  # share of the samples with a depth at all
 LEAST_SHARE = 0.15  # share of the valid samples that a surface needs to be the target
 GAP = (0.15, 0.04)  # m and share of the depth: a larger step starts another surface
+SLACK = 0.5  # m: so much the depth of a body varies from frame to frame
+FASTEST = 4.0  # m/s between camera and target
 
 
 class DepthError(ValueError):
@@ -70,6 +71,32 @@ def depth_in(box: Box, size: tuple[int, int], metres: NDArray[np.float32]) -> fl
     raise DepthError("no surface fills enough of the box: its depths are all over the place")
 
 
+class SteadyDepth:
+    """Refuses depths that the target cannot have reached since the last one."""
+
+    def __init__(self) -> None:
+        self._depth = 0.0
+        self._stamp = 0
+        self._track = -1
+
+    def checked(self, depth: float, stamp: int, track: int) -> float:
+        """The depth (m) at a stamp (ns) of a track, if it follows from the one before.
+
+        Raises:
+            DepthError: it lies further from the last than ``FASTEST`` and ``SLACK`` allow.
+        """
+        if track == self._track:
+            passed = max(stamp - self._stamp, 0) / SECOND
+            step = abs(depth - self._depth)
+            if step > SLACK + FASTEST * passed:
+                raise DepthError(
+                    f"the depth went from {self._depth:.1f} to {depth:.1f} m in {passed:.2f} s: "
+                    "that is another thing in the box"
+                )
+        self._depth, self._stamp, self._track = depth, stamp, track
+        return depth
+
+
 def pose_at(ray: NDArray[np.float64], depth: float, header: Header) -> PoseStamped:
     """The point on a ray ``depth`` m along the optical axis, orientation left at identity."""
     message = PoseStamped(header=header)
@@ -81,9 +108,7 @@ def pose_at(ray: NDArray[np.float64], depth: float, header: Header) -> PoseStamp
 def _samples(box: Box, size: tuple[int, int], metres: NDArray[np.float32]) -> NDArray[np.float32]:
     """The depth pixels of the box's inner part, thinned out to a bounded number."""
     scale = metres.shape[1] / size[0], metres.shape[0] / size[1]
-    inner = replace(
-        Box.from_centre(*box.centre, box.w * INNER, box.h * INNER),
-    )
+    inner = Box.from_centre(*box.centre, box.w * INNER, box.h * INNER)
     left, right = (round(edge * scale[0]) for edge in (inner.x, inner.x + inner.w))
     top, bottom = (round(edge * scale[1]) for edge in (inner.y, inner.y + inner.h))
     part = metres[max(top, 0) : max(bottom, top + 1, 0), max(left, 0) : max(right, left + 1, 0)]

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from sensor_msgs.msg import CameraInfo, Image
 from std_msgs.msg import Header
 
-from het_ros.ros.depth import DepthError, depth_in, metres_of, pose_at
+from het_ros.ros.depth import DepthError, SteadyDepth, depth_in, metres_of, pose_at
 from het_ros.ros.hints import Hints
 from het_ros.ros.images import ImageError
 from het_ros.ros.messages import stamp_ns
@@ -33,6 +33,7 @@ class Space:
         self.settings = settings
         self._hints = hints
         self._info: CameraInfo | None = None
+        self._steady = SteadyDepth()
         self._depths: deque[Image] = deque(maxlen=DEPTHS)
 
     def on_camera_info(self, message: CameraInfo) -> None:
@@ -48,8 +49,10 @@ class Space:
         ray = self._ray(box, size, header)
         return None if ray is None else bearing_message(ray, header)
 
-    def pose(self, box: Box, size: tuple[int, int], header: Header) -> PoseStamped | None:
-        """The target's place, or None without camera_info or without depth of the target."""
+    def pose(
+        self, box: Box, size: tuple[int, int], header: Header, track: int
+    ) -> PoseStamped | None:
+        """The place of a track's target, or None without camera_info or depth of the target."""
         depth_image = self._depth_at(stamp_ns(header))
         ray = self._ray(box, size, header) if depth_image is not None else None
         if depth_image is None or ray is None:
@@ -61,7 +64,8 @@ class Space:
                 "send depth that is registered to the images",
             )
         try:
-            return pose_at(ray, depth_in(box, size, metres_of(depth_image)), header)
+            depth = depth_in(box, size, metres_of(depth_image))
+            return pose_at(ray, self._steady.checked(depth, stamp_ns(header), track), header)
         except (DepthError, ImageError) as error:
             self._hints.once(f"depth {type(error).__name__}", f"no ~/target_pose: {error}")
             return None

@@ -75,6 +75,9 @@ class TrackerNode(LifecycleNode):
     ``tap``. Deactivating keeps the track, cleaning up drops it; a pause counts as a gap between
     images, so after more than ``max_gap`` the track is LOST.
 
+    Attributes:
+        space: takes camera_info and depth, by hand as well.
+
     Args:
         name: node name, first part of the output topics.
         tap: called as ``tap(topic, message)`` for everything published, subscribers or not (but
@@ -98,7 +101,7 @@ class TrackerNode(LifecycleNode):
         declare(self, config or TrackerConfig())
         self._settings = read(self, NodeConfig)
         self._pursuit = self._new_pursuit()
-        self._space = Space(self._settings, self._hints)
+        self.space = Space(self._settings, self._hints)
         self._health = Health()
         self._active = False
         self._enabled = True
@@ -155,8 +158,8 @@ class TrackerNode(LifecycleNode):
         self._image_input = self._subscribe(kind, topic, self.on_image, NEWEST_ONLY)
         self._subscribe(PolygonStamped, "~/init_box", self.on_init_box, RELIABLE)
         self._subscribe(RegionOfInterest, "~/init_roi", self.on_init_roi, RELIABLE)
-        self._subscribe(CameraInfo, "camera_info", self._space.on_camera_info, NEWEST_ONLY)
-        self._subscribe(Image, "depth", self._space.on_depth, NEWEST_ONLY)
+        self._subscribe(CameraInfo, "camera_info", self.space.on_camera_info, NEWEST_ONLY)
+        self._subscribe(Image, "depth", self.space.on_depth, NEWEST_ONLY)
         if self._settings.image_timeout > 0:
             steady = Clock(clock_type=ClockType.STEADY_TIME)
             self._silence = self.create_timer(
@@ -265,14 +268,14 @@ class TrackerNode(LifecycleNode):
         send = self._outputs.send
         if estimate is not None and pixels is not None and estimate.state in SEEN:
             box, size = estimate.box, (pixels.shape[1], pixels.shape[0])
+            track = self._pursuit.track
             send("box", lambda: polygon_from_box(box, header))
             send("pose", lambda: pose_from_estimate(estimate, header))
             send("velocity", lambda: twist_from_estimate(estimate, header))
-            send("bearing", lambda: self._space.bearing(box, size, header))
+            send("bearing", lambda: self.space.bearing(box, size, header))
             if estimate.state is State.TRACKING:  # else the depth is of what hides the target
-                send("target_pose", lambda: self._space.pose(box, size, header))
+                send("target_pose", lambda: self.space.pose(box, size, header, track))
             if "detections" in self._outputs:
-                track = self._pursuit.track
                 send("detections", lambda: detections_message(estimate, track, header))
         send("status", lambda: self._status(outcome))
         self._health.processed(time.monotonic() - outcome.frame.arrival)
@@ -332,7 +335,7 @@ class TrackerNode(LifecycleNode):
 
     def _apply_parameters(self, _: list[Parameter]) -> None:
         """Take new values between two frames: the node's at once, the tracker's with a new box."""
-        self._settings = self._space.settings = read(self, NodeConfig)
+        self._settings = self.space.settings = read(self, NodeConfig)
         self._pursuit.configure(read(self, TrackerConfig), self._settings)
 
     def _on_reset(self, _: Trigger.Request, response: Trigger.Response) -> Trigger.Response:

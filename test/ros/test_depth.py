@@ -3,7 +3,7 @@ import pytest
 from sensor_msgs.msg import Image
 
 from het_ros import Box
-from het_ros.ros.depth import DepthError, depth_in, metres_of, pose_at
+from het_ros.ros.depth import DepthError, SteadyDepth, depth_in, metres_of, pose_at
 from het_ros.ros.images import ImageError
 
 from .streams import header_at
@@ -106,6 +106,29 @@ def test_encodings(encoding, kind, scale, big_endian):
 def test_other_encodings_are_refused():
     with pytest.raises(ImageError, match="depth is"):
         metres_of(Image(width=1, height=1, encoding="rgb8", step=3, data=bytes(3)))
+
+
+@pytest.mark.parametrize(
+    "track, stamp, depth, fits",
+    [
+        (1, 0.1, 2.4, True),  # a body's parts
+        (1, 0.1, 1.5, True),
+        (1, 1.0, 5.5, True),  # somebody runs
+        (1, 0.1, 6.0, False),  # the wall behind
+        (1, 0.1, 0.8, False),  # a post before
+        (2, 0.1, 6.0, True),  # another target
+        (1, 5.0, 6.0, True),  # long enough for anything
+    ],
+)
+def test_a_depth_that_jumps_is_of_something_else(track, stamp, depth, fits):
+    steady = SteadyDepth()
+    steady.checked(2.0, 0, 1)
+    if fits:
+        assert steady.checked(depth, round(stamp * 1e9), track) == depth
+    else:
+        with pytest.raises(DepthError, match="another thing"):
+            steady.checked(depth, round(stamp * 1e9), track)
+        assert steady.checked(2.1, round(stamp * 1e9), track) == 2.1
 
 
 def test_pose_lies_on_the_ray_at_that_depth():

@@ -38,7 +38,7 @@ def hand(graph, made_footage):
     """A node by hand that follows the made target, with a camera_info."""
     frames, box = made_footage
     hand = ByHand(graph)
-    hand.node._space.on_camera_info(CameraInfo(width=160, height=120, k=MATRIX))
+    hand.node.space.on_camera_info(CameraInfo(width=160, height=120, k=MATRIX))
     hand.image(frames[0], 1.0)
     hand.box(box)
     return hand
@@ -56,7 +56,7 @@ def test_bearing_points_through_the_box(hand, made_footage):
 
 
 def test_target_pose_lies_at_the_depth(hand, made_footage):
-    hand.node._space.on_depth(depth_message(3.0, 1 + FRAME_TIME))
+    hand.node.space.on_depth(depth_message(3.0, 1 + FRAME_TIME))
     outputs = hand.image(made_footage[0][1], 1 + FRAME_TIME)
     place, ray = outputs["target_pose"].pose.position, outputs["bearing"].vector
     assert outputs["target_pose"].header == outputs["box"].header
@@ -74,7 +74,7 @@ def test_target_pose_lies_at_the_depth(hand, made_footage):
     ],
 )
 def test_no_target_pose_without_depth_of_the_target(hand, made_footage, depth):
-    hand.node._space.on_depth(depth)
+    hand.node.space.on_depth(depth)
     outputs = hand.image(made_footage[0][1], 1 + FRAME_TIME)
     assert "target_pose" not in outputs
     assert "bearing" in outputs
@@ -85,7 +85,7 @@ def test_no_bearing_without_calibration(graph, made_footage):
     hand = ByHand(graph)
     hand.image(frames[0], 1.0)
     assert "bearing" not in hand.box(box)
-    hand.node._space.on_camera_info(CameraInfo(width=640, height=480, k=MATRIX))
+    hand.node.space.on_camera_info(CameraInfo(width=640, height=480, k=MATRIX))
     assert "bearing" not in hand.image(frames[1], 1 + FRAME_TIME)
 
 

@@ -1,0 +1,98 @@
+"""A follower's control law with its dead man's switch; plain Python, so that it can be tested."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from het_ros.tracking.estimate import State
+from het_ros.tracking.parameter import check_parameters, parameter
+
+
+@dataclass(frozen=True)
+class FollowerConfig:
+    """Settings of the follower.
+
+    Raises:
+        ValueError: a value is of the wrong type or outside its range.
+    """
+
+    distance: float = parameter(2.0, "kept to the target", unit="m", low=0.3, high=20.0)
+    drive_gain: float = parameter(
+        0.8, "speed per error of distance", unit="1/s", low=0.0, high=5.0
+    )
+    turn_gain: float = parameter(2.0, "turn rate per bearing", unit="1/s", low=0.0, high=10.0)
+    max_linear: float = parameter(0.6, "fastest drive", unit="m/s", low=0.0, high=5.0)
+    max_angular: float = parameter(1.0, "fastest turn", unit="rad/s", low=0.0, high=5.0)
+    timeout: float = parameter(
+        0.3, "without news of the target for this long it stops", unit="s", low=0.05, high=0.45
+    )
+    rate: float = parameter(20.0, "commands a second", unit="1/s", low=10.0, high=200.0)
+    image_width: float = parameter(
+        0.0, "of the images, where there is no ~/bearing but only ~/pose; 0: wait for a bearing",
+        unit="px", low=0.0, high=20000.0,
+    )  # fmt: skip
+    field_of_view: float = parameter(
+        1.08, "of the camera across, used with image_width", unit="rad", low=0.1, high=3.0
+    )
+
+    def __post_init__(self) -> None:
+        check_parameters(self)
+
+
+class Follower:
+    """Turns towards the target and keeps a distance; stands still when in doubt.
+
+    It moves only while fresh statuses say TRACKING or COASTING, and drives forward only while the
+    target is TRACKING and its place is known. All times are s of one monotonic clock.
+    """
+
+    def __init__(self, config: FollowerConfig) -> None:
+        self.config = config
+        self._state = State.LOST
+        self._heard = -math.inf
+        self._bearing = 0.0
+        self._aimed = -math.inf
+        self._away = 0.0
+        self._placed = -math.inf
+
+    def on_status(self, state: State, now: float) -> None:
+        """Take the state of the track."""
+        self._state, self._heard = state, now
+
+    def on_bearing(self, x: float, z: float, now: float) -> None:
+        """Take a ray's part to the right and forward."""
+        self._bearing, self._aimed = math.atan2(x, z), now
+
+    def on_pixel(self, x: float, now: float) -> None:
+        """Take the column of the target's centre, px, as a bearing of a camera without lens."""
+        if self.config.image_width > 0:
+            half = self.config.image_width / 2
+            slope = math.tan(self.config.field_of_view / 2)
+            self.on_bearing((x - half) / half * slope, 1.0, now)
+
+    def on_place(self, x: float, z: float, now: float) -> None:
+        """Take how far away the target is, m to the right and forward."""
+        self._away, self._placed = math.hypot(x, z), now
+
+    def command(self, now: float) -> tuple[float, float]:
+        """(m/s forward, rad/s to the left) at a time; (0, 0) when in doubt."""
+        config = self.config
+        if now - self._heard > config.timeout or self._state not in (
+            State.TRACKING,
+            State.COASTING,
+        ):
+            return 0.0, 0.0
+        angular = linear = 0.0
+        if now - self._aimed <= config.timeout:
+            angular = _limited(-config.turn_gain * self._bearing, config.max_angular)
+        if self._state is State.TRACKING and now - self._placed <= config.timeout:
+            # Turn first, then drive: a target at the side is no place to drive to.
+            ahead = max(math.cos(self._bearing), 0.0)
+            wanted = config.drive_gain * (self._away - config.distance) * ahead
+            linear = _limited(wanted, config.max_linear)
+        return linear, angular
+
+
+def _limited(value: float, most: float) -> float:
+    return min(max(value, -most), most) if math.isfinite(value) else 0.0

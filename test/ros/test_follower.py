@@ -1,0 +1,113 @@
+import math
+
+import numpy as np
+import pytest
+from geometry_msgs.msg import TwistStamped
+from rclpy.node import Node
+
+from het_ros import Box, Estimate, State
+from het_ros.ros.follower import Follower, FollowerConfig
+from het_ros.ros.follower_example import FollowerNode
+from het_ros.ros.messages import pose_from_estimate
+from het_ros.ros.optics import bearing_message
+from het_ros.ros.status import Status, status_message
+
+from .streams import header_at
+
+CONFIG = FollowerConfig()
+
+
+def following(state=State.TRACKING, bearing=0.0, away=3.0, now=0.0) -> Follower:
+    follower = Follower(CONFIG)
+    follower.on_bearing(math.sin(bearing), math.cos(bearing), now)
+    follower.on_place(away * math.sin(bearing), away * math.cos(bearing), now)
+    follower.on_status(state, now)
+    return follower
+
+
+@pytest.mark.parametrize(
+    "bearing, away, linear, angular",
+    [
+        (0.0, CONFIG.distance, 0.0, 0.0),
+        (0.0, CONFIG.distance + 0.5, 0.4, 0.0),
+        (0.0, CONFIG.distance - 0.5, -0.4, 0.0),
+        (0.0, 20.0, CONFIG.max_linear, 0.0),
+        (0.0, 0.1, -CONFIG.max_linear, 0.0),
+        (0.2, CONFIG.distance, 0.0, -0.4),  # at the right: turn right, which is negative
+        (-0.2, CONFIG.distance, 0.0, 0.4),
+        (1.5, CONFIG.distance, 0.0, -CONFIG.max_angular),
+        (math.pi, 20.0, 0.0, -CONFIG.max_angular),  # behind: turn, do not drive
+    ],
+)
+def test_turns_to_the_target_and_keeps_the_distance(bearing, away, linear, angular):
+    assert following(bearing=bearing, away=away).command(0.0) == pytest.approx((linear, angular))
+
+
+@pytest.mark.parametrize("state", [State.LOST, State.IDLE])
+def test_stops_at_once_when_the_target_is_lost(state):
+    follower = following(bearing=0.3)
+    assert follower.command(0.1) != (0, 0)
+    follower.on_status(state, 0.1)
+    assert follower.command(0.1) == (0, 0)
+
+
+def test_stops_within_half_a_second_of_silence():
+    follower = following(bearing=0.3)
+    assert follower.command(CONFIG.timeout - 0.01) != (0, 0)
+    assert follower.command(CONFIG.timeout + 0.01) == (0, 0)
+    assert CONFIG.timeout + 1 / CONFIG.rate < 0.5
+    highest = FollowerConfig(timeout=0.45, rate=20.0)  # the table allows no more
+    assert highest.timeout + 1 / highest.rate <= 0.5
+
+
+def test_does_not_drive_by_a_prediction():
+    linear, angular = following(State.COASTING, bearing=0.3, away=5.0).command(0.0)
+    assert linear == 0
+    assert angular < 0
+
+
+def test_turns_only_without_a_place():
+    follower = Follower(CONFIG)
+    follower.on_status(State.TRACKING, 0.0)
+    follower.on_bearing(0.3, 1.0, 0.0)
+    linear, angular = follower.command(0.0)
+    assert linear == 0
+    assert angular < 0
+
+
+def test_a_pixel_is_a_bearing_where_the_image_width_is_known():
+    follower = Follower(FollowerConfig(image_width=640.0, field_of_view=math.pi / 2))
+    follower.on_status(State.TRACKING, 0.0)
+    follower.on_pixel(640.0, 0.0)
+    assert follower._bearing == pytest.approx(math.pi / 4)
+    deaf = Follower(CONFIG)
+    deaf.on_status(State.TRACKING, 0.0)
+    deaf.on_pixel(640.0, 0.0)
+    assert deaf.command(0.0) == (0, 0)
+
+
+def test_not_a_number_does_not_drive():
+    follower = following()
+    follower.on_place(math.nan, 1.0, 0.0)
+    follower.on_bearing(math.nan, 1.0, 0.0)
+    assert follower.command(0.0) == (0, 0)
+
+
+def test_the_node_publishes_commands_and_stops_when_the_tracker_falls_silent(graph):
+    clock = [0.0]
+    node = graph.add(FollowerNode(clock=lambda: clock[0], context=graph.context))
+    got = []
+    base = graph.add(Node("base", context=graph.context))
+    base.create_subscription(TwistStamped, "cmd_vel", got.append, 10)
+    graph.spin_until(lambda: got, "a first command")
+    assert (got[-1].twist.linear.x, got[-1].twist.angular.z) == (0, 0)
+
+    node.on_bearing(bearing_message(np.array([0.2, 0.0, 0.98]), header_at(1.0)))
+    estimate = Estimate(Box(0, 0, 10, 10), (0.0, 0.0), np.eye(4), 1.0, State.TRACKING)
+    node.on_pose(pose_from_estimate(estimate, header_at(1.0)))
+    status = Status(State.TRACKING, 1.0, 0.01, 0.0, "")
+    node.on_status(status_message(status, "tracker", header_at(1.0)))
+    graph.spin_until(lambda: got[-1].twist.angular.z < 0, "a turn to the right")
+    assert got[-1].header.frame_id == "base_link"
+    clock[0] = 0.5
+    graph.spin_until(lambda: got[-1].twist.angular.z == 0, "a stop")
