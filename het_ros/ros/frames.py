@@ -9,12 +9,38 @@ import cv2
 from sensor_msgs.msg import CompressedImage, Image
 from std_msgs.msg import Header
 
-from het_ros.ros.images import ImageError, array_of
+from het_ros.ros.images import ImageError, Pixels, array_of
 from het_ros.ros.stamps import SECOND
 
 ImageMessage = Image | CompressedImage
 MEGABYTE = 1_000_000
 JPEG_QUALITY = 95
+
+
+class Conversion:
+    """The pixels of one image, converted once for all nodes that look at it.
+
+    :meth:`close` lets them go, so that the ring keeps the message alone.
+    """
+
+    def __init__(self, message: ImageMessage) -> None:
+        self._message = message
+        self._pixels: dict[int, Pixels] = {}
+        self._open = True
+
+    def pixels(self, white: int) -> Pixels:
+        """The pixels; raises ImageError as :func:`array_of` does."""
+        pixels = self._pixels.get(white)
+        if pixels is None:
+            pixels = array_of(self._message, white)
+            if self._open:
+                self._pixels[white] = pixels
+        return pixels
+
+    def close(self) -> None:
+        """Keep nothing from now on."""
+        self._open = False
+        self._pixels.clear()
 
 
 @dataclass(frozen=True, eq=False)
@@ -25,11 +51,13 @@ class Frame:
         message: the image; its pixels are read when they are needed.
         stamp: ns, of its header or of its arrival.
         arrival: s on the monotonic clock.
+        shared: its conversion, where several nodes look at it.
     """
 
     message: ImageMessage
     stamp: int
     arrival: float
+    shared: Conversion | None = None
 
     @property
     def header(self) -> Header:
@@ -40,6 +68,10 @@ class Frame:
     def size(self) -> int:
         """Bytes of data."""
         return len(self.message.data)
+
+    def pixels(self, white: int) -> Pixels:
+        """Its image; raises ImageError as :func:`array_of` does."""
+        return self.shared.pixels(white) if self.shared else array_of(self.message, white)
 
 
 class FrameRing:

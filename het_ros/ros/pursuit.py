@@ -13,7 +13,7 @@ from dataclasses import dataclass
 
 from het_ros.ros.frames import Frame, FrameRing
 from het_ros.ros.hints import Hints
-from het_ros.ros.images import ImageError, Pixels, array_of
+from het_ros.ros.images import ImageError, Pixels
 from het_ros.ros.messages import BoxError
 from het_ros.ros.parameters import NodeConfig
 from het_ros.ros.session import TrackingSession
@@ -127,7 +127,7 @@ class Pursuit:
             return None
         frame = newest if stamp == 0 else self._frame_of(box, stamp, newest)
         try:
-            pixels = array_of(frame.message, self.settings.white_level)
+            pixels = frame.pixels(self.settings.white_level)
         except ImageError as error:
             raise BoxError(f"its image cannot be read: {error}") from error
         estimate = self._start(frame, pixels, box)
@@ -236,7 +236,7 @@ class Pursuit:
         )
         if self._request is None and not self.session.running and kind in self._readable:
             return None
-        pixels = array_of(message, self.settings.white_level)
+        pixels = frame.pixels(self.settings.white_level)
         if len(self._readable) < 100:
             self._readable.add(kind)
         return pixels

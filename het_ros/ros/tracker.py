@@ -6,7 +6,7 @@ import argparse
 import sys
 
 import rclpy
-from rclpy.exceptions import ParameterException
+from rclpy.exceptions import InvalidNodeNameException, ParameterException
 from rclpy.executors import ExternalShutdownException, SingleThreadedExecutor
 from rclpy.utilities import remove_ros_args
 
@@ -21,24 +21,30 @@ def main(args: list[str] | None = None) -> int:
         description="Follow one target on a camera stream.",
         epilog="example: ros2 run het_ros tracker --ros-args -r image:=/camera/image_raw",
     )
-    parser.parse_args(remove_ros_args(argv)[1:])
-    node = None
+    parser.add_argument(
+        "--targets",
+        default="",
+        help="names of several nodes on the same images, each with its own target: left,right",
+    )
+    options = parser.parse_args(remove_ros_args(argv)[1:])
+    nodes: list[TrackerNode] = []
     try:
         rclpy.init(args=argv)
-        node = TrackerNode()
         executor = SingleThreadedExecutor()
-        executor.add_node(node)
+        for name in options.targets.split(",") if options.targets else ["tracker"]:
+            nodes.append(TrackerNode(name, source=nodes[0] if nodes else None))
+            executor.add_node(nodes[-1])
         executor.spin()
     except (KeyboardInterrupt, ExternalShutdownException):
         pass
-    except (ParameterException, ValueError) as error:
+    except (InvalidNodeNameException, ParameterException, ValueError) as error:
         print(f"tracker: {error}", file=sys.stderr)
         return 2
     except Exception:
         if rclpy.ok():  # else a signal came while the node was being made
             raise
     finally:
-        if node is not None:
+        for node in nodes:
             node.destroy_node()
         rclpy.try_shutdown()
     return 0

@@ -23,9 +23,9 @@ from std_srvs.srv import SetBool, Trigger
 from het_ros.ros.debug_image import debug_message, drawn
 from het_ros.ros.detections import detections_message, vision_msgs
 from het_ros.ros.diagnostics import Health
-from het_ros.ros.frames import Frame, ImageMessage
+from het_ros.ros.frames import Conversion, Frame, ImageMessage
 from het_ros.ros.hints import Hints
-from het_ros.ros.images import ImageError, array_of
+from het_ros.ros.images import ImageError
 from het_ros.ros.messages import (
     BoxError,
     box_from_polygon,
@@ -83,6 +83,8 @@ class TrackerNode(LifecycleNode):
         tap: called as ``tap(topic, message)`` for everything published, subscribers or not (but
             "debug_image", which is drawn for subscribers only); topic is a key of ``OUTPUTS``.
         config: the tracker's defaults, under the parameters that are set.
+        source: another node of the same process whose images this one looks at as well; each is
+            taken and converted once for both, and none come while ``source`` is not active.
         **options: of rclpy's Node (context, namespace, parameter_overrides, cli_args...).
     """
 
@@ -92,10 +94,13 @@ class TrackerNode(LifecycleNode):
         *,
         tap: Tap | None = None,
         config: TrackerConfig | None = None,
+        source: TrackerNode | None = None,
         **options: Any,
     ) -> None:
         super().__init__(name, **options)
         self._tap = tap
+        self._source = source
+        self._sharing: list[TrackerNode] = []
         self._hints = Hints(self.get_logger())
         declare(self, NodeConfig())
         declare(self, config or TrackerConfig())
@@ -152,22 +157,34 @@ class TrackerNode(LifecycleNode):
     @_told
     def on_activate(self, state: LifecycleState) -> TransitionCallbackReturn:
         """Subscribe to the inputs."""
-        compressed = self._settings.image_transport == "compressed"
-        topic = self.resolve_topic_name("image") + ("/compressed" if compressed else "")
-        kind = CompressedImage if compressed else Image
-        self._image_input = self._subscribe(kind, topic, self.on_image, NEWEST_ONLY)
+        if self._source is None:
+            self._take_images()
+        else:
+            self._source.share_with(self)
         self._subscribe(PolygonStamped, "~/init_box", self.on_init_box, RELIABLE)
         self._subscribe(RegionOfInterest, "~/init_roi", self.on_init_roi, RELIABLE)
         self._subscribe(CameraInfo, "camera_info", self.space.on_camera_info, NEWEST_ONLY)
         self._subscribe(Image, "depth", self.space.on_depth, NEWEST_ONLY)
+        self._active = True
+        return super().on_activate(state)
+
+    def share_with(self, node: TrackerNode) -> None:
+        """Let another node look at this one's images."""
+        if node not in self._sharing:
+            self._sharing.append(node)
+
+    def _take_images(self) -> None:
+        """Subscribe to images, and say so if none come."""
+        compressed = self._settings.image_transport == "compressed"
+        topic = self.resolve_topic_name("image") + ("/compressed" if compressed else "")
+        kind = CompressedImage if compressed else Image
+        self._image_input = self._subscribe(kind, topic, self.on_image, NEWEST_ONLY)
         if self._settings.image_timeout > 0:
             steady = Clock(clock_type=ClockType.STEADY_TIME)
             self._silence = self.create_timer(
                 self._settings.image_timeout, self._on_silence, clock=steady
             )
             self._inputs.append((self.destroy_timer, self._silence))
-        self._active = True
-        return super().on_activate(state)
 
     def on_deactivate(self, state: LifecycleState) -> TransitionCallbackReturn:
         """Leave the inputs; the track is kept."""
@@ -213,8 +230,17 @@ class TrackerNode(LifecycleNode):
     def on_image(self, message: ImageMessage) -> None:
         """Process one image: start the box that waits for it, or follow the track, and publish."""
         arrival = time.monotonic()
+        shared = Conversion(message) if self._sharing else None
+        frame = Frame(message, self._stamp_of(message.header), arrival, shared)
+        for node in (self, *self._sharing):
+            node.on_frame(frame)
+        if shared is not None:
+            shared.close()
+
+    def on_frame(self, frame: Frame) -> None:
+        """Process a frame that this node or another one took."""
         if self._active and self._enabled:
-            self._pursuit.on_frame(Frame(message, self._stamp_of(message.header), arrival))
+            self._pursuit.on_frame(frame)
             self._work()
 
     def on_init_box(self, message: PolygonStamped) -> None:
@@ -302,7 +328,7 @@ class TrackerNode(LifecycleNode):
         pixels = outcome.pixels
         if pixels is None:
             try:
-                pixels = array_of(outcome.frame.message, self._settings.white_level)
+                pixels = outcome.frame.pixels(self._settings.white_level)
             except ImageError:
                 return
         image = drawn(pixels, outcome.estimate, self.state, self.reason)
