@@ -45,10 +45,10 @@ def _check(client: Any, scheduler: str) -> None:
         **client.run(_import_error),
         "the scheduler": client.run_on_scheduler(_import_error),
     }
-    for place, error in missing.items():
-        if error:
+    for place, reason in missing.items():
+        if reason:
             raise ValueError(
-                f"{place} of the cluster cannot import het_ros ({error}): install it there, with "
+                f"{place} of the cluster cannot import het_ros ({reason}): install it there, with "
                 "its extras evaluate and cluster, or start Dask where it is installed"
             )
 

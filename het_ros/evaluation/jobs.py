@@ -3,8 +3,12 @@
 from __future__ import annotations
 
 import contextlib
+import os
+import pickle
+import subprocess
+import sys
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
 import cv2
@@ -20,6 +24,8 @@ from het_ros.evaluation.protocols import follow, follow_camera, follow_restartin
 from het_ros.evaluation.sequences import Frames
 from het_ros.evaluation.trackers import TrackerSpec, tracking_source
 from het_ros.tracking.box import Box
+
+DIED = "the process died (a crash in native code)"
 
 
 @dataclass(frozen=True)
@@ -100,21 +106,32 @@ def carry_out(
             and need the same files under the same paths.
 
     A process that dies (a crash in native code) takes its job with it: that job comes back as a
-    failed run, the others are run again.
+    failed run, whatever ran beside it is run again.
     """
     if scheduler:
         with cluster.connected(scheduler):
-            yield from _stream(jobs, pre_dispatch="all")
+            yield from _stream(jobs, "all", run_guarded)
         return
     left = {job.key: job for job in jobs}
-    try:
-        with _processes(workers):
-            for job, track in _stream(jobs, pre_dispatch=workers):
-                del left[job.key]
-                yield job, track
-    except TerminatedWorkerError:
-        for job in left.values():
-            yield job, _alone(job)
+    with _processes(workers):
+        while left:
+            try:
+                for job, track in _stream(list(left.values()), workers):
+                    del left[job.key]
+                    yield job, track
+            except TerminatedWorkerError:
+                yield from _one_by_one(left)
+
+
+def _one_by_one(left: dict[str, Job]) -> Iterator[tuple[Job, Track]]:
+    """Run jobs singly, taking them out of ``left``, up to the one that its process dies of."""
+    for key, job in list(left.items()):
+        del left[key]
+        try:
+            yield from _stream([job], 1)
+        except TerminatedWorkerError:
+            yield job, _failed(job, DIED)
+            return
 
 
 @contextlib.contextmanager
@@ -135,25 +152,50 @@ def _load() -> None:
     time.sleep(0.3)  # long enough for every process to get one
 
 
-def _stream(jobs: list[Job], pre_dispatch: int | str) -> Iterator[tuple[Job, Track]]:
+def _stream(
+    jobs: list[Job], pre_dispatch: int | str, run: Callable[[Job], Track] = run_job
+) -> Iterator[tuple[Job, Track]]:
     parallel = joblib.Parallel(
         return_as="generator_unordered", batch_size=1, pre_dispatch=pre_dispatch
     )
-    for index, track in parallel(joblib.delayed(_numbered)(i, j) for i, j in enumerate(jobs)):
+    tasks = (joblib.delayed(_numbered)(i, job, run) for i, job in enumerate(jobs))
+    for index, track in parallel(tasks):
         yield jobs[index], track
 
 
-def _numbered(index: int, job: Job) -> tuple[int, Track]:
-    return index, run_job(job)
+def _numbered(index: int, job: Job, run: Callable[[Job], Track]) -> tuple[int, Track]:
+    return index, run(job)
 
 
-def _alone(job: Job) -> Track:
-    """Run a job in a process of its own, which may die."""
-    try:
-        with _processes(1):
-            return next(_stream([job], pre_dispatch=1))[1]
-    except TerminatedWorkerError:
-        return _failed(job, "the process died (a crash in native code)")
+def run_guarded(job: Job) -> Track:
+    """Run a job of a peer in a process of its own, so that its crash leaves a Dask worker alive.
+
+    A worker that dies is started again by Dask, and again, and joblib waits for it for ever.
+    """
+    if job.tracker.source:
+        return run_job(job)
+    command = [sys.executable, "-c", f"from {__name__} import run_piped; run_piped()"]
+    done = subprocess.run(
+        command,
+        input=pickle.dumps(job),
+        capture_output=True,
+        env={**os.environ, "PYTHONPATH": os.pathsep.join(filter(None, sys.path))},
+    )
+    if done.returncode < 0:
+        return _failed(job, DIED)
+    if done.returncode:
+        raise RuntimeError(done.stderr.decode(errors="replace"))
+    track: Track = pickle.loads(done.stdout)
+    return track
+
+
+def run_piped() -> None:
+    """Read a job from standard input, run it, and write its track to standard output."""
+    job = pickle.load(sys.stdin.buffer)
+    out = os.fdopen(os.dup(1), "wb")
+    os.dup2(2, 1)  # what native code prints goes elsewhere
+    with out:
+        pickle.dump(run_job(job), out)
 
 
 def _failed(job: Job, error: str) -> Track:

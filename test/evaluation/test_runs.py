@@ -197,6 +197,16 @@ def test_a_dask_cluster_gives_the_same_results(two, tmp_path, cluster):
     assert same(tracks(here), tracks(there))
 
 
+def test_a_crash_on_a_cluster_is_a_recorded_failure_too(two, tmp_path, cluster):
+    cache = Cache(tmp_path / "c")
+    plan = Plan([STILL, ABORTS], two)
+    found = carry_out_plan(plan, cache, scheduler=cluster.scheduler_address, quiet=True)
+    errors = {(r.tracker, r.sequence): r.track.error for r in found}
+    assert len(errors) == 4
+    assert "the process died" in errors.pop(("aborts", "two"))
+    assert set(errors.values()) == {""}
+
+
 def test_a_cluster_without_het_ros_is_told_so(two, tmp_path, cluster, monkeypatch):
     def broken():
         return "No module named 'het_ros'"
