@@ -12,7 +12,7 @@ from pathlib import Path
 from het_ros.evaluation import opencv_peers, pages, published, raw_boxes, report, tables
 from het_ros.evaluation.cache import Cache
 from het_ros.evaluation.drawing import colours
-from het_ros.evaluation.jobs import SourceChangedError
+from het_ros.evaluation.jobs import DIED, SourceChangedError
 from het_ros.evaluation.plots import plots
 from het_ros.evaluation.protocols import PROTOCOLS
 from het_ros.evaluation.readers import read_sequences
@@ -120,8 +120,9 @@ def evaluate(options: argparse.Namespace) -> int:
     timing = Timing()
     if options.timing > 0:
         folder = options.out / "cache" / "timing"
+        dead = {(run.tracker, run.sequence) for run in runs if run.track.error == DIED}
         timing = time_trackers(
-            plan.trackers, plan.sequences, options.timing, folder, options.quiet
+            plan.trackers, plan.sequences, options.timing, folder, dead, options.quiet
         )
     scored = score_runs(runs, plan.sequences)
     results = summarise(plan, scored, timing)

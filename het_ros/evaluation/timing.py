@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import os
 import time
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from collections.abc import Sequence as Listing
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -44,24 +44,27 @@ def time_trackers(
     sequences: Listing[Sequence],
     frames: int,
     folder: Path,
+    skipped: Collection[tuple[str, str]] = (),
     quiet: bool = False,
 ) -> Timing:
     """Time the first ``frames`` updates of every tracker on every sequence.
 
     All trackers of a comparison are timed together or not at all: what is kept in ``folder`` is
-    kept for the whole list of trackers, so that no ratio compares two days.
+    kept for the whole list of trackers, so that no ratio compares two days. Pairs (tracker,
+    sequence) in ``skipped`` are not run: those whose process died when they were scored.
     """
     folder.mkdir(parents=True, exist_ok=True)
     seconds, load = {}, 0.0
     comparison = [tracker.fingerprint for tracker in trackers]
     with tqdm(sequences, unit="sequence", desc="timing", disable=quiet) as bar:
         for sequence in bar:
+            taken = [t if (t.name, sequence.name) not in skipped else None for t in trackers]
             key = key_of(comparison, sequence.frames.fingerprint(), frames)
             file = folder / f"{sequence.name}_{key}.json"
             if not file.is_file():
                 part = Frames(sequence.frames.files[: frames + 1], sequence.frames.rate)
                 begun = os.getloadavg()[0]
-                times = _interleaved(trackers, part, Box(*sequence.truth[0]))
+                times = _interleaved(taken, part, Box(*sequence.truth[0]))
                 file.write_text(json.dumps({"load": begun, "seconds": [list(t) for t in times]}))
             saved = json.loads(file.read_text())
             load = max(load, saved["load"])
@@ -71,7 +74,7 @@ def time_trackers(
 
 
 def _interleaved(
-    trackers: Listing[TrackerSpec], frames: Frames, box: Box
+    trackers: Listing[TrackerSpec | None], frames: Frames, box: Box
 ) -> list[NDArray[np.float64]]:
     """Blocks of frames in turn: each tracker does one block, then the next tracker does it.
 
@@ -108,7 +111,9 @@ def _timed(
     return True
 
 
-def _started(spec: TrackerSpec, image: NDArray[np.uint8], box: Box) -> Tracker | None:
+def _started(spec: TrackerSpec | None, image: NDArray[np.uint8], box: Box) -> Tracker | None:
+    if spec is None:
+        return None
     try:
         tracker = spec.build(0)
         tracker.init(image, box)
