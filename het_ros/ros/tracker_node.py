@@ -144,7 +144,7 @@ class TrackerNode(LifecycleNode):
             kinds["detections"] = vision_msgs.Detection2DArray
         self._outputs = Outputs(self, kinds, self._tap)
         self._diagnostics = self.create_publisher(DiagnosticArray, "/diagnostics", RELIABLE)
-        self._services = [
+        self._offered = [
             self.create_service(Trigger, "~/reset", self._on_reset),
             self.create_service(SetBool, "~/enable", self._on_enable),
         ]
@@ -201,8 +201,8 @@ class TrackerNode(LifecycleNode):
         self.destroy_publisher(self._diagnostics)
         self.destroy_timer(self._reporter)
         self.destroy_guard_condition(self._wake)
-        while self._services:
-            self.destroy_service(self._services.pop())
+        while self._offered:
+            self.destroy_service(self._offered.pop())
         return super().on_cleanup(state)
 
     def on_shutdown(self, state: LifecycleState) -> TransitionCallbackReturn:

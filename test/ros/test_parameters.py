@@ -6,9 +6,11 @@ from rclpy.exceptions import (
 )
 from rclpy.node import Node
 from rclpy.parameter import Parameter as RosParameter
+from rclpy.parameter_client import AsyncParameterClient
 
 from het_ros import TrackerConfig
 from het_ros.ros.parameters import NodeConfig, declare, read
+from het_ros.ros.tracker_node import TrackerNode
 from het_ros.tracking.parameter import parameters_of
 
 from .streams import ByHand, header_at, image_message
@@ -134,3 +136,16 @@ def test_tracker_settings_apply_with_the_next_box(hand, made_footage):
     assert hand.node._pursuit.session._tracker.config.sub_patches == 11
     hand.box(box)
     assert hand.node._pursuit.session._tracker.config.sub_patches == 4
+
+
+def test_another_node_sets_a_parameter(graph):
+    """What ``ros2 param set`` does, with its answer."""
+    node = graph.add(TrackerNode(context=graph.context))
+    client = AsyncParameterClient(graph.add(Node("user", context=graph.context)), "tracker")
+    graph.spin_until(client.services_are_ready, "the parameter services")
+    for value, fits in ((3.5, True), (-3.5, False)):
+        future = client.set_parameters([RosParameter("max_gap", value=value)])
+        graph.spin_until(future.done, "an answer")
+        (result,) = future.result().results
+        assert result.successful == fits
+        assert node.get_parameter("max_gap").value == 3.5
