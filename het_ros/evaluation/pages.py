@@ -22,9 +22,11 @@ def update(page: Path, results: Results, tables: list[Table]) -> None:
 
     def written(place: re.Match[str]) -> str:
         parts = [f"{title(results)}. {origin(results)}."]
-        for name in (part.strip() for part in place[2].split(",")):
+        names = [name.strip() for name in place[2].split(",")]
+        for name in names:
             if name not in titled:
                 raise ValueError(f"{page} wants a table {name!r}; there are {', '.join(titled)}")
+            parts += [f"### {name}"] if len(names) > 1 else []
             parts.append(titled[name].markdown())
             parts += [titled[name].note] if titled[name].note else []
         return place[1] + "\n\n".join(parts) + "\n\n" + place[3]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import datetime
+import os
 import platform
 from collections import defaultdict
 from collections.abc import Iterable, Mapping
@@ -181,7 +182,7 @@ def _grouped(items: Iterable[Any], key: Any) -> dict[Any, list[Any]]:
 def machine() -> dict[str, str]:
     """What the speed depends on."""
     return {
-        "cpu": _cpu(),
+        "cpu": f"{_cpu()}, {os.cpu_count()} processors",
         "system": platform.platform(),
         "python": platform.python_version(),
         "numpy": np.__version__,

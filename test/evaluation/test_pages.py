@@ -28,6 +28,14 @@ def test_marked_places_are_rewritten_and_the_rest_stays(tmp_path):
     assert page.read_text() == text, "twice is as once"
 
 
+def test_several_tables_in_one_place_get_headings(tmp_path):
+    page = tmp_path / "page.md"
+    page.write_text("<!-- evaluate: Trackers, Other -->\n<!-- /evaluate -->\n")
+    update(page, RESULTS, TABLES)
+    assert "### Trackers\n\n| tracker |" in page.read_text()
+    assert "### Other\n\n| x |" in page.read_text()
+
+
 @pytest.mark.parametrize(
     ("text", "complaint"),
     [
