@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from functools import cached_property
 
@@ -10,35 +11,83 @@ import numpy as np
 from numpy.typing import NDArray
 
 Pixels = NDArray[np.uint8]
+Plane = NDArray[np.float32]
+
+ORIENTATIONS = 6
+# Normalised gradients lie in 0..2 or so; times this they fill a byte.
+_GRADIENT_SCALE = 80.0
+# Gradients far below this many grey values are noise and are not blown up by normalisation.
+_GRADIENT_FLOOR = 4.0
 
 
 class _Source:
     """One window's pixels and what channels share, each computed once when first asked for."""
 
-    def __init__(self, pixels: Pixels) -> None:
+    def __init__(self, pixels: Pixels, cell: int) -> None:
         self.pixels = pixels
+        self.cell = cell
 
     @cached_property
     def bgr(self) -> Pixels:
         """(H, W, 3) uint8; a gray image three times."""
-        return _as_bgr(self.pixels)
+        if self.pixels.ndim == 3:
+            return self.pixels
+        return np.asarray(cv2.cvtColor(self.pixels, cv2.COLOR_GRAY2BGR), np.uint8)
 
     @cached_property
     def gray(self) -> Pixels:
         """(H, W) uint8."""
-        return _as_gray(self.pixels)
+        if self.pixels.ndim == 2:
+            return self.pixels
+        return np.asarray(cv2.cvtColor(self.pixels, cv2.COLOR_BGR2GRAY), np.uint8)
+
+    @cached_property
+    def lab(self) -> Pixels:
+        """(H, W, 3) uint8, CIE L*a*b*."""
+        return np.asarray(cv2.cvtColor(self.bgr, cv2.COLOR_BGR2LAB), np.uint8)
+
+    @cached_property
+    def lightness(self) -> Pixels:
+        """(H, W) uint8, L* of a colour image or the gray image itself."""
+        return self.pixels if self.pixels.ndim == 2 else self.lab[..., 0]
+
+    @cached_property
+    def gradient(self) -> tuple[Plane, Plane]:
+        """Gradient's locally normalised magnitude and its direction in [0, 2 ORIENTATIONS).
+
+        Divided by the mean magnitude around, a gradient says the same under a lamp and in the
+        shade. Both (H, W) float32.
+        """
+        dx = cv2.Sobel(self.lightness, cv2.CV_32F, 1, 0, ksize=1)
+        dy = cv2.Sobel(self.lightness, cv2.CV_32F, 0, 1, ksize=1)
+        magnitude, angle = cv2.cartToPolar(dx, dy)
+        around = 4 * self.cell + 1
+        mean = np.asarray(cv2.blur(magnitude, (around, around)), np.float32)
+        mean += _GRADIENT_FLOOR
+        cv2.divide(magnitude, mean, magnitude, scale=_GRADIENT_SCALE)
+        directions = np.asarray(angle, np.float32)
+        directions *= ORIENTATIONS / math.pi
+        return np.asarray(magnitude, np.float32), directions
 
 
-def _as_bgr(pixels: Pixels) -> Pixels:
-    if pixels.ndim == 3:
-        return pixels
-    return np.asarray(cv2.cvtColor(pixels, cv2.COLOR_GRAY2BGR), dtype=np.uint8)
+def _orientation(k: int) -> Callable[[_Source], Plane]:
+    """The part of the gradient that runs along direction k of ORIENTATIONS over half a turn.
 
+    A gradient is shared between the two directions next to it, in proportion.
+    """
 
-def _as_gray(pixels: Pixels) -> Pixels:
-    if pixels.ndim == 2:
-        return pixels
-    return np.asarray(cv2.cvtColor(pixels, cv2.COLOR_BGR2GRAY), dtype=np.uint8)
+    def channel(source: _Source) -> Plane:
+        magnitude, angle = source.gradient
+        # Directions k and k + ORIENTATIONS are the same, and 2 ORIENTATIONS is a full turn.
+        away = np.abs(angle - np.float32(k))
+        np.minimum(away, np.abs(angle - np.float32(k + ORIENTATIONS)), out=away)
+        if k == 0:
+            np.minimum(away, 2 * ORIENTATIONS - angle, out=away)
+        share = np.maximum(1 - away, 0, out=away)
+        share *= magnitude
+        return np.asarray(share, np.float32)
+
+    return channel
 
 
 # name -> (channel, name that a gray image takes instead or None where it has no such channel)
@@ -47,6 +96,11 @@ _TABLE: dict[str, tuple[Callable[[_Source], NDArray[np.generic]], str | None]] =
     "b": (lambda source: source.bgr[..., 0], "gray"),
     "g": (lambda source: source.bgr[..., 1], "gray"),
     "r": (lambda source: source.bgr[..., 2], "gray"),
+    "lightness": (lambda source: source.lightness, "lightness"),
+    "green_red": (lambda source: source.lab[..., 1], None),
+    "blue_yellow": (lambda source: source.lab[..., 2], None),
+    "gradient": (lambda source: source.gradient[0], "gradient"),
+    **{f"orientation{k}": (_orientation(k), f"orientation{k}") for k in range(ORIENTATIONS)},
 }
 
 CHANNEL_NAMES: tuple[str, ...] = tuple(_TABLE)
@@ -68,15 +122,28 @@ def names_for(names: tuple[str, ...], image: NDArray[np.uint8]) -> tuple[str, ..
     return tuple(dict.fromkeys(name for name in instead if name is not None)) or ("gray",)
 
 
-def channel_stack(pixels: Pixels, names: tuple[str, ...]) -> tuple[NDArray[np.generic], ...]:
-    """Channels of a window by name.
+def channel_stack(pixels: Pixels, names: tuple[str, ...], cell: int = 1) -> tuple[Pixels, ...]:
+    """Channels of a window by name, averaged over cells.
 
     Args:
         pixels: (H, W, 3) uint8 BGR or (H, W) uint8.
         names: channels, out of ``CHANNEL_NAMES``.
+        cell: side of a cell, px. What does not fill a cell at the right and below is left out.
 
     Returns:
-        C planes of (H, W), uint8 for the channels of colour.
+        C planes of (H // cell, W // cell) uint8. All channels are bytes, so that their integral
+        images are whole numbers and exact.
     """
-    source = _Source(pixels)
-    return tuple(_TABLE[name][0](source) for name in names)
+    source = _Source(pixels, cell)
+    return tuple(_cells(_TABLE[name][0](source), cell) for name in names)
+
+
+def _cells(plane: NDArray[np.generic], cell: int) -> Pixels:
+    """Mean of a plane over cells, as uint8."""
+    if cell > 1:
+        rows, columns = plane.shape[0] // cell, plane.shape[1] // cell
+        whole = np.ascontiguousarray(plane[: rows * cell, : columns * cell])
+        plane = np.asarray(cv2.resize(whole, (columns, rows), interpolation=cv2.INTER_AREA))
+    if plane.dtype == np.uint8:
+        return np.asarray(plane, np.uint8)
+    return np.asarray(cv2.convertScaleAbs(np.asarray(plane, np.float32)), np.uint8)

@@ -48,7 +48,12 @@ class MeasurementMatrix:
 
 
 def draw_measurement_matrix(
-    size: tuple[int, int], channels: int, features: int, rectangles: int, rng: np.random.Generator
+    size: tuple[int, int],
+    channels: int,
+    features: int,
+    rectangles: int,
+    rng: np.random.Generator,
+    largest: float = 1.0,
 ) -> MeasurementMatrix:
     """Draw R for sub-patches of ``size``.
 
@@ -58,8 +63,11 @@ def draw_measurement_matrix(
         features: m, number of rows.
         rectangles: Z, most rectangles of a row.
         rng: where everything is drawn from.
+        largest: longest side of a rectangle over the sub-patch's side, 0..1. Small rectangles
+            tell places apart that differ by little.
     """
     width, height = size
+    widest, highest = (max(1, round(largest * side)) for side in size)
     rows = []
     for _ in range(features):
         channel = int(rng.integers(channels))
@@ -67,8 +75,8 @@ def draw_measurement_matrix(
         row = []
         for _ in range(count):
             x0, y0 = int(rng.integers(width)), int(rng.integers(height))
-            x1 = int(rng.integers(x0 + 1, width, endpoint=True))
-            y1 = int(rng.integers(y0 + 1, height, endpoint=True))
+            x1 = int(rng.integers(x0 + 1, min(width, x0 + widest), endpoint=True))
+            y1 = int(rng.integers(y0 + 1, min(height, y0 + highest), endpoint=True))
             row.append(Rectangle(channel, x0, y0, x1, y1, 1 if rng.integers(2) else -1))
         rows.append(tuple(row))
     return MeasurementMatrix(size, tuple(rows))

@@ -4,8 +4,16 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from het_ros.tracking.channels import CHANNEL_NAMES
+from het_ros.tracking.channels import CHANNEL_NAMES, ORIENTATIONS
 from het_ros.tracking.parameter import check_parameters, parameter
+
+_ALL_CHANNELS = (
+    "lightness",
+    "green_red",
+    "blue_yellow",
+    "gradient",
+    *(f"orientation{k}" for k in range(ORIENTATIONS)),
+)
 
 
 @dataclass(frozen=True)
@@ -21,14 +29,17 @@ class TrackerConfig:
     seed: int = parameter(0, "seed of the random sub-patches and features", low=0, high=2**31 - 1)
     # Appearance: sub-patches and compressive features.
     channels: tuple[str, ...] = parameter(
-        ("b", "g", "r"), "image channels that features are taken from", choices=CHANNEL_NAMES
+        _ALL_CHANNELS, "image channels that features are taken from", choices=CHANNEL_NAMES
     )
     working_side: float = parameter(
-        0.0,
+        48.0,
         "sqrt(w h) of the target in the search window; 0 takes the image as it is",
         unit="px",
         low=0,
         high=1000,
+    )
+    cell: int = parameter(
+        2, "channels are averaged over cells of this side", unit="working px", low=1, high=16
     )
     sub_patches: int = parameter(11, "Q, number of sub-patches", low=1, high=100)
     sub_patch_fraction: float = parameter(
@@ -38,31 +49,76 @@ class TrackerConfig:
         150, "m, number of compressive features and of weak classifiers", low=1, high=2000
     )
     rectangles: int = parameter(4, "Z, most rectangles of a feature", low=1, high=16)
+    largest_rectangle: float = parameter(
+        1.0, "longest side of a rectangle over the sub-patch's side", low=0.01, high=1.0
+    )
     # Bottom layer: base ensembles.
+    base_ensemble: str = parameter(
+        "ridge", "how a base ensemble weighs its features", choices=("ridge", "naive_bayes")
+    )
     search_radius: float = parameter(
-        20.0, "beta, how far a sub-patch is searched", unit="working px", low=1, high=200
+        34.0, "beta, how far a sub-patch is searched", unit="working px", low=1, high=200
     )
     positive_radius: float = parameter(
-        4.0, "samples nearer than this are positives", unit="working px", low=1, high=200
+        4.0,
+        "naive Bayes: samples nearer than this are positives",
+        unit="working px",
+        low=1,
+        high=200,
     )
     negative_radius: float = parameter(
-        8.0, "samples at least this far are negatives", unit="working px", low=1, high=400
+        8.0,
+        "naive Bayes: samples at least this far are negatives",
+        unit="working px",
+        low=1,
+        high=400,
     )
     learning_rate: float = parameter(
-        0.85, "lambda, weight of the old value at an update", low=0, high=1
+        0.98, "lambda, weight of the old value at an update", low=0, high=1
     )
     sigma_floor: float = parameter(
         0.05,
-        "least sigma of a Gaussian, as part of the feature's own deviation",
+        "naive Bayes: least sigma of a Gaussian, as part of the feature's own deviation",
         low=1e-6,
         high=10,
     )
+    ridge: float = parameter(
+        0.01, "ridge: regularisation over the variance of a feature", low=1e-9, high=1e3
+    )
+    label_sigma: float = parameter(
+        0.12, "ridge: deviation of the labels", unit="target sides", low=0.01, high=1
+    )
+    target_emphasis: float = parameter(
+        10.0, "ridge: how much more the target's places weigh than background", low=0, high=1e4
+    )
     # Middle layer: combination.
-    weight_low: float = parameter(0.1, "weight of the worst sub-patch", low=0, high=0.99)
-    weight_high: float = parameter(0.9, "weight of the best sub-patch", low=0, high=0.99)
+    combination: str = parameter(
+        "dense",
+        "votes of all score maps, or weighted mean of one hypothesis a sub-patch",
+        choices=("dense", "weighted"),
+    )
+    weight_low: float = parameter(0.1, "least weight of a sub-patch", low=0, high=0.99)
+    weight_high: float = parameter(0.9, "greatest weight of a sub-patch", low=0, high=0.99)
+    colour_weight: float = parameter(
+        0.4, "share of the colour histograms in the dense votes; 0 is without", low=0, high=1
+    )
+    colour_rate: float = parameter(
+        0.02, "weight of the new frame in the colour histograms", low=0, high=1
+    )
+    # Scale.
+    scales: int = parameter(
+        17, "number of sizes tried a frame; 1 keeps the size of the first box", low=1, high=65
+    )
+    scale_step: float = parameter(1.02, "ratio of one size to the next", low=1.001, high=1.2)
+    scale_context: float = parameter(
+        1.2, "how much more than the target the scale filter sees", low=0.5, high=3
+    )
+    scale_rate: float = parameter(
+        0.02, "weight of the new frame in the scale filter", low=0, high=1
+    )
     # Top layer: adaptive Kalman filter.
     acceleration: float = parameter(
-        20.0,
+        40.0,
         "deviation of the target's acceleration, which makes Q(0)",
         unit="target sides/s^2",
         low=0,
@@ -85,6 +141,28 @@ class TrackerConfig:
     longest_dt: float = parameter(
         1.0, "motion is extrapolated over no longer a time", unit="s", low=1e-3, high=60
     )
+    # Trust: shares of what the evidence was while all went well.
+    trust: bool = parameter(
+        True, "judge whether the target is there; without it every frame is followed and learnt"
+    )
+    hidden: float = parameter(
+        0.47,
+        "hidden where the product of the base ensembles' and the colours' shares falls below",
+        low=0,
+        high=1,
+    )
+    doubt_template: float = parameter(
+        0.75, "not learnt where the score falls below this share", low=0, high=1
+    )
+    doubt_rival: float = parameter(
+        0.8, "and another place scores above this share of the best", low=0, high=1
+    )
+    return_template: float = parameter(
+        0.6, "found again only where the score is above this share", low=0, high=2
+    )
+    lost_after: float = parameter(
+        2.0, "a target that stays hidden is coasted this long, then LOST", unit="s", low=0, high=60
+    )
 
     def __post_init__(self) -> None:
         check_parameters(self)
@@ -100,6 +178,11 @@ class TrackerConfig:
                     f"{low} ({getattr(self, low):g}) must not exceed {high} "
                     f"({getattr(self, high):g})"
                 )
+        if self.trust and (self.base_ensemble, self.combination) != ("ridge", "dense"):
+            raise ValueError(
+                "trust judges the scores of base_ensemble ridge and combination dense: "
+                "set trust to false with any other"
+            )
 
     @classmethod
     def paper(cls, seed: int = 0) -> TrackerConfig:
@@ -121,4 +204,28 @@ class TrackerConfig:
         - Q(0) is that of white acceleration over the real time step; Q(0) and R(0) are in
           multiples of the target's side sqrt(w h).
         """
-        return cls(seed=seed)
+        return cls(
+            seed=seed,
+            channels=("b", "g", "r"),
+            working_side=0.0,
+            cell=1,
+            sub_patches=11,
+            sub_patch_fraction=0.75,
+            features=150,
+            rectangles=4,
+            largest_rectangle=1.0,
+            base_ensemble="naive_bayes",
+            search_radius=20.0,
+            positive_radius=4.0,
+            negative_radius=8.0,
+            learning_rate=0.85,
+            sigma_floor=0.05,
+            combination="weighted",
+            weight_low=0.1,
+            weight_high=0.9,
+            colour_weight=0.0,
+            scales=1,
+            acceleration=20.0,
+            measurement_noise=0.05,
+            trust=False,
+        )

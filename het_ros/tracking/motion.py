@@ -11,6 +11,9 @@ from numpy.typing import NDArray
 
 Floats = NDArray[np.float64]
 
+_STEADY_TIME = 0.4  # s, over which velocities are averaged for coasting
+_COAST_TIME = 0.5  # s, in which a hidden target's velocity falls to 1/e
+
 
 class AdaptiveKalman:
     """Constant-velocity filter over x = [cx, cy, vx, vy], px and px/s (eq. Kalman(k+1)).
@@ -46,7 +49,11 @@ class AdaptiveKalman:
         # The first box is as good as a measurement; nothing is known of the speed but that
         # it came about within the time over which motion is followed.
         speed = acceleration * longest_dt
-        self._filter.P = np.diag([measurement_noise**2] * 2 + [speed**2] * 2)
+        self._first_covariance = np.diag([measurement_noise**2] * 2 + [speed**2] * 2)
+        self._filter.P = self._first_covariance.copy()
+        self._steady = np.zeros(2)
+        self._before = self._filter.x
+        self._dt = nominal_dt
 
     def step(self, dt: float) -> float:
         """The time step that is used for a ``dt`` between frames, s.
@@ -74,6 +81,8 @@ class AdaptiveKalman:
         self._process_noise = Q_discrete_white_noise(
             dim=2, dt=dt, var=self._acceleration**2, block_size=2, order_by_dim=False
         )
+        self._dt = dt
+        self._before = self._filter.x.copy()
         self._filter.predict(Q=np.zeros((4, 4)))
         return self.centre
 
@@ -87,10 +96,25 @@ class AdaptiveKalman:
         """
         self._filter.P = self._filter.P + mean_weight * self._process_noise
         self._filter.update(measurement, R=(1 - mean_weight) * self._first_noise)
+        share = 1 - math.exp(-self._dt / _STEADY_TIME)
+        self._steady = self._steady + share * (self._filter.x[2:] - self._steady)
 
     def coast(self) -> None:
-        """Go without a measurement in this frame: the full process noise is added."""
+        """Go without a measurement in this frame: the full process noise is added.
+
+        The velocity of a single frame shakes with the camera. A hidden target goes on at its
+        steady velocity, which fades: nobody walks on for ever behind a post.
+        """
+        self._filter.x[:2] = self._before[:2] + self._steady * self._dt
+        self._steady = self._steady * math.exp(-self._dt / _COAST_TIME)
+        self._filter.x[2:] = self._steady
         self._filter.P = self._filter.P + self._process_noise
+
+    def restart(self, centre: Floats) -> None:
+        """Start again at ``centre`` (2,), px, with all else unknown: the target came back."""
+        self._steady = np.zeros(2)
+        self._filter.x = np.array([*centre, 0.0, 0.0])
+        self._filter.P = self._first_covariance.copy()
 
     @property
     def centre(self) -> Floats:

@@ -3,13 +3,19 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import cv2
 import numpy as np
 from numpy.typing import NDArray
 
 Points = NDArray[np.float64]
+
+# A window that shrinks its source by more than this is averaged, not interpolated.
+_AVERAGE_FROM = 1.5
+# Of a source that is larger still, only every k-th px is read, so that each window px averages
+# this many px a side: the cost of a window then does not depend on the target's size.
+_SAMPLES = 3
 
 
 @dataclass(frozen=True)
@@ -18,12 +24,12 @@ class Window:
 
     Attributes:
         pixels: (H, W, 3) or (H, W) uint8; a view of the image where that is possible.
-        origin: image px (x, y) of the window's top-left corner, whole numbers.
+        origin: image px (x, y) of the window's top-left corner.
         scale: window px per image px (in x, in y).
     """
 
     pixels: NDArray[np.uint8]
-    origin: tuple[int, int]
+    origin: tuple[float, float]
     scale: tuple[float, float]
 
     def to_window(self, points: Points) -> Points:
@@ -34,35 +40,78 @@ class Window:
         """Window px (..., 2) to image px (..., 2)."""
         return np.asarray(points / np.array(self.scale) + np.array(self.origin))
 
+    def in_cells(self, cell: int) -> Window:
+        """The same window with places counted in cells of ``cell`` px."""
+        return replace(self, scale=(self.scale[0] / cell, self.scale[1] / cell))
+
 
 def cut_window(
-    image: NDArray[np.uint8], x: float, y: float, width: int, height: int, scale: float = 1.0
+    image: NDArray[np.uint8],
+    x: float,
+    y: float,
+    width: int,
+    height: int,
+    scale: tuple[float, float] = (1.0, 1.0),
 ) -> Window:
     """Cut a window out of an image; only its own pixels are read, resized or copied.
 
     Args:
         image: (H, W, 3) or (H, W) uint8.
-        x: wanted left side, image px; the window starts on the whole px at or before it.
-        y: wanted top side, image px, likewise.
+        x: left side, image px. At scale 1 the window starts on the whole px at or before it.
+        y: top side, image px, likewise.
         width: width of the window, window px.
         height: height of the window, window px.
-        scale: wanted window px per image px. The window's own ``scale`` differs from it by the
-            rounding of its source to whole px.
+        scale: window px per image px (in x, in y).
 
     Returns:
         The window. Beyond the image's border the last pixel is repeated, also where the window
         lies wholly outside.
     """
-    left, top = math.floor(x), math.floor(y)
-    source_width, source_height = (
-        (width, height) if scale == 1 else (math.ceil(width / scale), math.ceil(height / scale))
+    if scale == (1.0, 1.0):
+        left, top = math.floor(x), math.floor(y)
+        return Window(_crop(image, left, top, width, height), (left, top), scale)
+    return Window(_resample(image, x, y, width, height, scale), (x, y), scale)
+
+
+def _resample(
+    image: NDArray[np.uint8],
+    x: float,
+    y: float,
+    width: int,
+    height: int,
+    scale: tuple[float, float],
+) -> NDArray[np.uint8]:
+    """The window at a resolution of its own, its corner at (x, y) to a fraction of a px."""
+    columns = _inside(math.floor(x) - 1, math.ceil(width / scale[0]) + 3, image.shape[1])[0]
+    rows = _inside(math.floor(y) - 1, math.ceil(height / scale[1]) + 3, image.shape[0])[0]
+    source = image[rows, columns]
+    # How many image px one source px stands for, in x and in y.
+    coarse_x = coarse_y = 1.0
+    shrink = 1 / min(scale)
+    if shrink > _AVERAGE_FROM:
+        step = max(1, int(shrink / _SAMPLES))
+        size = (
+            max(1, round(source.shape[1] * scale[0])),
+            max(1, round(source.shape[0] * scale[1])),
+        )
+        coarse_x, coarse_y = source.shape[1] / size[0], source.shape[0] / size[1]
+        # From the middle of each step on, or everything would move by half a step.
+        thinned = np.ascontiguousarray(source[step // 2 :: step, step // 2 :: step])
+        source = np.asarray(cv2.resize(thinned, size, interpolation=cv2.INTER_AREA), np.uint8)
+    to_source = np.array(
+        [
+            [1 / scale[0] / coarse_x, 0, (x - columns.start + 0.5 / scale[0]) / coarse_x - 0.5],
+            [0, 1 / scale[1] / coarse_y, (y - rows.start + 0.5 / scale[1]) / coarse_y - 0.5],
+        ]
     )
-    pixels = _crop(image, left, top, source_width, source_height)
-    if (source_width, source_height) != (width, height):
-        shrinks = source_width * source_height > width * height
-        how = cv2.INTER_AREA if shrinks else cv2.INTER_LINEAR
-        pixels = np.asarray(cv2.resize(pixels, (width, height), interpolation=how), np.uint8)
-    return Window(pixels, (left, top), (width / source_width, height / source_height))
+    resampled = cv2.warpAffine(
+        source,
+        to_source,
+        (width, height),
+        flags=cv2.INTER_LINEAR | cv2.WARP_INVERSE_MAP,
+        borderMode=cv2.BORDER_REPLICATE,
+    )
+    return np.asarray(resampled, np.uint8)
 
 
 def _crop(

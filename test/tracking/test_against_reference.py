@@ -7,7 +7,7 @@ import pytest
 import reference
 
 from het_ros import Box, HierarchicalEnsembleTracker, TrackerConfig
-from het_ros.tracking import tracker as tracker_module
+from het_ros.tracking import target as target_module
 from het_ros.tracking.channels import names_for
 from het_ros.tracking.compressive import draw_measurement_matrix
 from het_ros.tracking.sub_patches import draw_sub_patches
@@ -41,8 +41,8 @@ def reference_tracker(config, image, box):
 def seen(monkeypatch):
     """What the tracker's layers handed each other in the last frame."""
     last = {}
-    detect, weights = tracker_module.detect, tracker_module.combination.weights
-    select, maps = tracker_module.to_be_updated, tracker_module.CompressiveFeatures.maps
+    detect, weights = target_module.detect, target_module.combination.weights
+    select, maps = target_module.to_be_updated, target_module.CompressiveFeatures.maps
 
     def keep(name, value):
         last[name] = value
@@ -52,13 +52,13 @@ def seen(monkeypatch):
         last["scores"] = scores
         return keep("found", detect(scores, corners, radius))
 
-    monkeypatch.setattr(tracker_module, "detect", keep_detection)
+    monkeypatch.setattr(target_module, "detect", keep_detection)
     monkeypatch.setattr(
-        tracker_module.combination, "weights", lambda *a: keep("omega", weights(*a))
+        target_module.combination, "weights", lambda *a: keep("omega", weights(*a))
     )
-    monkeypatch.setattr(tracker_module, "to_be_updated", lambda c: keep("chosen", select(c)))
+    monkeypatch.setattr(target_module, "to_be_updated", lambda c: keep("chosen", select(c)))
     monkeypatch.setattr(
-        tracker_module.CompressiveFeatures,
+        target_module.CompressiveFeatures,
         "maps",
         lambda self, integrals: keep("features", maps(self, integrals)),
     )

@@ -49,7 +49,7 @@ def test_configurations_are_frozen():
 @pytest.mark.parametrize("declared", parameters_of(TrackerConfig), ids=lambda p: p.name)
 def test_every_parameter_is_declared_in_full(declared):
     assert declared.doc
-    if isinstance(declared.default, (int, float)):
+    if type(declared.default) in (int, float):
         assert declared.low <= declared.default <= declared.high
         for edge in (declared.low, declared.high):
             declared.check(type(declared.default)(edge))

@@ -103,8 +103,9 @@ def test_nothing_to_see_leaves_the_box_where_it_is():
         (Box(0, 0, 160, 120), 1),
         (Box(-100, -100, 400, 400), 1),
         (Box(50, 50, 4, 4), 4),
-        (Box(50.5, 50.5, 1, 1), 25),  # one px cannot be told from others
-        (Box(50, 50, 0.4, 0.4), 25),
+        # One px cannot be told from others: it may go as far as it is searched for.
+        (Box(50.5, 50.5, 1, 1), 3 * PAPER.search_radius),
+        (Box(50, 50, 0.4, 0.4), 3 * PAPER.search_radius),
         (Box(-15, -20, 30, 40), 2),
         (Box(150, 110, 30, 40), 2),
         (Box(0, 50, 160, 1), 2),

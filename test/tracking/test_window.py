@@ -40,17 +40,29 @@ def test_window_inside_the_image_copies_nothing():
 @pytest.mark.parametrize("scale", [0.25, 0.37, 1.0, 2.5])
 def test_points_there_and_back(scale):
     image = np.zeros((200, 300), np.uint8)
-    window = cut_window(image, 51.2, 60.7, 40, 24, scale)
+    window = cut_window(image, 51.2, 60.7, 40, 24, (scale, scale))
     assert window.pixels.shape == (24, 40)
-    assert window.scale == pytest.approx((scale, scale), rel=0.1)
+    assert window.scale == (scale, scale)
     points = np.array([[51.0, 60.0], [80.5, 77.25], [-3.0, 400.0]])
     np.testing.assert_allclose(window.to_image(window.to_window(points)), points)
     np.testing.assert_allclose(window.to_window(np.array(window.origin)), [0, 0])
 
 
-def test_a_mark_is_found_where_the_conversion_says():
-    image = np.zeros((200, 300), np.uint8)
-    image[100:108, 160:168] = 255
-    window = cut_window(image, 120, 60, 30, 30, scale=0.25)
-    y, x = np.argwhere(window.pixels == 255).mean(axis=0) + 0.5
-    np.testing.assert_allclose(window.to_image(np.array([x, y])), [164, 104])
+@pytest.mark.parametrize(
+    "scale", [(2.5, 1.7), (0.9, 0.8), (0.5, 0.45), (0.21, 0.19), (0.05, 0.06)]
+)
+@pytest.mark.parametrize("at", [(812.3, 640.8), (1003.0, 590.0)])
+def test_a_mark_is_found_where_the_conversion_says(scale, at):
+    """A soft mark a few window px wide keeps its place to a fraction of a window px."""
+    height, width = 1400, 1800
+    spread = 3 / min(scale)
+    across = np.exp(-0.5 * ((np.arange(width) + 0.5 - at[0]) / spread) ** 2)
+    down = np.exp(-0.5 * ((np.arange(height) + 0.5 - at[1]) / spread) ** 2)
+    image = np.rint(250 * np.outer(down, across)).astype(np.uint8)
+    half = 15.0 / np.array(scale)
+    window = cut_window(image, at[0] - half[0] + 0.4, at[1] - half[1] - 0.7, 30, 30, scale)
+    rows, columns = np.mgrid[:30, :30] + 0.5
+    mass = window.pixels.astype(float)
+    found = np.array([(columns * mass).sum(), (rows * mass).sum()]) / mass.sum()
+    error = (window.to_image(found) - at) * scale
+    np.testing.assert_allclose(error, 0, atol=0.15)

@@ -1,0 +1,113 @@
+"""How much the colours of a place are the target's rather than the background's.
+
+Shape features lose a target that bends, turns or is blurred; its colours stay. Two histograms,
+of the target and of what surrounds it, give each pixel a probability of being the target's (Bayes
+with equal priors), and the mean over a box of the target's size scores a place.
+"""
+
+from __future__ import annotations
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+Plane = NDArray[np.float32]
+Corner = tuple[float, float]
+
+_BITS = 4  # a channel: 16 x 16 x 16 bins of colour, or 16 of gray
+_EMPTY = 1e-5  # share of a bin below which nothing is known of its colour
+_CORE = 0.8  # the target's colours are taken from this part of the box: corners are background
+_RING = 0.3  # width of the surroundings over half the target's circumference / 2
+
+
+class ColourModel:
+    """Colour histograms of a target and its surroundings.
+
+    Args:
+        size: (w, h) of the target, window px.
+        learning_rate: weight of the new frame, 0..1.
+    """
+
+    def __init__(self, size: tuple[int, int], learning_rate: float) -> None:
+        self._size = size
+        self._learning_rate = learning_rate
+        self._target: Plane | None = None
+        self._around: Plane = np.empty(0, np.float32)
+
+    def likelihood(self, pixels: NDArray[np.uint8]) -> Plane:
+        """Probability (H, W) float32 that a pixel is the target's, by its colour alone."""
+        if self._target is None:
+            raise RuntimeError("the colour model knows no target yet: call learn first")
+        table = (self._target + _EMPTY) / (self._target + self._around + 2 * _EMPTY)
+        return np.asarray(table[colour_bins(pixels)], np.float32)
+
+    def learn(self, pixels: NDArray[np.uint8], corner: Corner) -> None:
+        """Blend in the colours of a window with the target's corner at ``corner``, window px.
+
+        The first call sets the histograms outright.
+
+        Args:
+            pixels: (H, W, 3) uint8 BGR or (H, W) uint8.
+            corner: (x, y) of the target, window px.
+        """
+        bins = colour_bins(pixels)
+        width, height = self._size
+        ring = round(_RING * (width + height) / 2)
+        margin = (1 - _CORE) / 2
+        target = _histogram(_cut(bins, corner, self._size, (-margin * width, -margin * height)))
+        wide = _histogram(_cut(bins, corner, self._size, (ring, ring)))
+        around = wide - _histogram(_cut(bins, corner, self._size, (2, 2)))
+        target /= target.sum()
+        around /= max(float(around.sum()), 1.0)
+        if self._target is None:
+            self._target, self._around = target, around
+        else:
+            self._target += self._learning_rate * (target - self._target)
+            self._around += self._learning_rate * (around - self._around)
+
+
+def colour_bins(pixels: NDArray[np.uint8]) -> NDArray[np.intp]:
+    """Bin (H, W) of each pixel's colour, below 4096."""
+    levels = (pixels >> (8 - _BITS)).astype(np.intp)
+    if pixels.ndim == 2:
+        return levels
+    return (levels[..., 0] << 2 * _BITS) | (levels[..., 1] << _BITS) | levels[..., 2]
+
+
+def cell_means(likelihood: Plane, cell: int) -> Plane:
+    """Mean of a likelihood (H, W) over cells: (H // cell, W // cell) float32."""
+    if cell == 1:
+        return likelihood
+    rows, columns = likelihood.shape[0] // cell, likelihood.shape[1] // cell
+    whole = np.ascontiguousarray(likelihood[: rows * cell, : columns * cell])
+    return np.asarray(cv2.resize(whole, (columns, rows), interpolation=cv2.INTER_AREA), np.float32)
+
+
+def box_means(likelihood: Plane, size: tuple[int, int], shape: tuple[int, int]) -> Plane:
+    """Mean likelihood in the boxes of ``size`` (w, h) with their corners at the first places.
+
+    Args:
+        likelihood: (H, W) float32.
+        size: (w, h) of the target, px of ``likelihood``.
+        shape: (rows, columns) of places asked for.
+    """
+    means = cv2.boxFilter(
+        likelihood, cv2.CV_32F, size, anchor=(0, 0), borderType=cv2.BORDER_REPLICATE
+    )
+    return np.asarray(means[: shape[0], : shape[1]], np.float32)
+
+
+def _cut(
+    bins: NDArray[np.intp], corner: Corner, size: tuple[int, int], margin: tuple[float, float]
+) -> NDArray[np.intp]:
+    """The part of a window within a box larger by ``margin`` on each side, 1 px or more."""
+    ranges = []
+    for start, length, more, limit in zip(corner, size, margin, bins.shape[::-1], strict=True):
+        first = min(max(round(start - more), 0), limit - 1)
+        last = min(max(round(start + length + more), first + 1), limit)
+        ranges.append(slice(first, last))
+    return bins[ranges[1], ranges[0]]
+
+
+def _histogram(bins: NDArray[np.intp]) -> Plane:
+    return np.bincount(bins.ravel(), minlength=1 << 3 * _BITS).astype(np.float32)

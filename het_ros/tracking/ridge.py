@@ -1,0 +1,116 @@
+"""Bottom layer, discriminative: base ensembles by ridge regression on the same feature maps.
+
+Where naive Bayes gives each weak classifier a vote of its own, here the votes are fitted
+together: the m features of a place are regressed on a Gaussian label that is 1 at the sub-patch's
+own place and falls to 0 around it, a_q = (G + ridge I)^-1 b_q. All sub-patches see the same places
+of the window, so they share one Gram matrix, and each other's places are their negatives.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from het_ros.tracking.base_ensembles import nearest_places
+
+Floats = NDArray[np.float64]
+Features = NDArray[np.floating[Any]]
+
+
+class RidgeEnsembles:
+    """Linear base ensembles F_q(l) = a_q . [l, 1], fitted in closed form.
+
+    Args:
+        learning_rate: weight of the new frame in the running statistics, 0..1.
+        ridge: regularisation, in units of a standardised feature's variance.
+        label_sigma: (in x, in y) deviation of the Gaussian labels, px of the maps.
+        emphasis: a place weighs 1 + ``emphasis`` times its largest label. There are thousands
+            of background places and a handful of the target's; without it the background wins.
+    """
+
+    def __init__(
+        self,
+        learning_rate: float,
+        ridge: float,
+        label_sigma: tuple[float, float],
+        emphasis: float,
+    ) -> None:
+        self._learning_rate = learning_rate
+        self._ridge = ridge
+        self._label_sigma = label_sigma
+        self._emphasis = emphasis
+        self._gram: Features | None = None  # (m + 1, m + 1)
+        self._moment: Features = np.empty((0, 0))  # (m + 1, Q)
+        self._votes: Features = np.empty((0, 0))  # (m + 1, Q)
+
+    def score_maps(self, features: Features) -> Features:
+        """F_q at every place: (Q, rows, columns), about 1 on the target and 0 elsewhere.
+
+        Args:
+            features: (m, rows, columns), standardised.
+        """
+        votes = self._fitted()
+        flat = features.reshape(len(features), -1)
+        scores = votes[:-1].T @ flat
+        scores += votes[-1][:, None]
+        return np.asarray(scores.reshape(-1, *features.shape[1:]))
+
+    def learn(self, features: Features, corners: Floats, chosen: NDArray[np.bool_]) -> None:
+        """Blend this frame into the statistics and fit again; the first call sets them outright.
+
+        Args:
+            features: (m, rows, columns), standardised.
+            corners: (Q, 2) of the re-extracted sub-patches, px of the maps.
+            chosen: (Q,), sub-patches whose labels are taken; the Gram matrix is common to all.
+        """
+        flat = features.reshape(len(features), -1)
+        labels = self.labels(corners, features.shape[1:], flat.dtype)
+        weights = 1 + self._emphasis * labels.max(axis=0)
+        weights /= weights.sum()
+        weighted = flat * weights
+        gram, moment = _with_constant(flat, weighted, weights, labels)
+        if self._gram is None:
+            self._gram, self._moment = gram, moment
+        else:
+            rate = self._learning_rate
+            self._gram += rate * (gram - self._gram)
+            self._moment[:, chosen] += rate * (moment - self._moment)[:, chosen]
+        regular = self._gram + self._ridge * np.eye(len(gram), dtype=gram.dtype)
+        self._votes = np.linalg.solve(regular, self._moment)
+
+    def likelihood(self, features: Features, corners: Floats) -> float:
+        """Mean score of the sub-patches at ``corners`` (Q, 2), cut to 0..1."""
+        votes = self._fitted()
+        x, y = nearest_places(corners, features.shape[1:])
+        values = (votes[:-1] * features[:, y, x]).sum(axis=0) + votes[-1]
+        return float(np.clip(values.mean(), 0, 1))
+
+    def labels(self, corners: Floats, shape: tuple[int, ...], dtype: Any = float) -> Features:
+        """Gaussian labels (Q, rows * columns) of the sub-patches at ``corners`` (Q, 2)."""
+        sigma_x, sigma_y = self._label_sigma
+        across = np.exp(-0.5 * ((np.arange(shape[1]) - corners[:, :1]) / sigma_x) ** 2)
+        down = np.exp(-0.5 * ((np.arange(shape[0]) - corners[:, 1:]) / sigma_y) ** 2)
+        labels = down.astype(dtype)[:, :, None] * across.astype(dtype)[:, None, :]
+        return np.asarray(labels.reshape(len(corners), -1))
+
+    def _fitted(self) -> Features:
+        if self._gram is None:
+            raise RuntimeError("the base ensembles know no target yet: call learn first")
+        return self._votes
+
+
+def _with_constant(
+    flat: Features, weighted: Features, weights: Features, labels: Features
+) -> tuple[Features, Features]:
+    """Weighted Gram matrix (m + 1, m + 1) and moments (m + 1, Q) with a constant 1 as feature."""
+    m, sub_patches = len(flat), len(labels)
+    gram = np.empty((m + 1, m + 1), flat.dtype)
+    moment = np.empty((m + 1, sub_patches), flat.dtype)
+    gram[:m, :m] = weighted @ flat.T
+    gram[m, :m] = gram[:m, m] = weighted.sum(axis=1)
+    gram[m, m] = 1
+    moment[:m] = weighted @ labels.T
+    moment[m] = labels @ weights
+    return gram, moment

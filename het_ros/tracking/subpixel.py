@@ -1,0 +1,22 @@
+"""Between the samples of a response."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+
+def parabola_offset(values: NDArray[np.floating[Any]], peak: int) -> float:
+    """Offset, -0.5..0.5, of the top of a parabola through a peak and its two neighbours.
+
+    Args:
+        values: (n,) samples.
+        peak: index of the highest. At either end there is no parabola and the offset is 0.
+    """
+    if not 0 < peak < len(values) - 1:
+        return 0.0
+    left, top, right = (float(values[peak + k]) for k in (-1, 0, 1))
+    bend = left - 2 * top + right
+    return float(np.clip(0.5 * (left - right) / bend, -0.5, 0.5)) if bend < 0 else 0.0

@@ -1,0 +1,124 @@
+"""Whether what was found is the target: what to follow, what to learn, when to give up.
+
+The mean weight of the combination says how the sub-patches compare, not whether the target is
+there. That is judged here, from raw evidence relative to what it was while all went well.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from enum import Enum
+
+from het_ros.tracking.estimate import State
+
+_RUNNING_RATE = 0.05  # of the means of the evidence, a frame
+_YOUNG = 10  # frames in which the model has seen too little to be ambiguous about a rival
+_COLOUR_POWER = 1.0
+_NEVER_BELOW = 0.2  # relative template score that nothing can excuse
+# score = logistic(bias + slopes * evidence), fitted to the frames of many real tracks.
+_BIAS, _BY_TEMPLATE, _BY_COLOUR, _BY_RIVAL = -4.0, 6.0, 2.0, -2.0
+
+
+class Verdict(Enum):
+    """What a frame's measurement is good for."""
+
+    SEEN = "seen"  # follow it and learn from it
+    DOUBTED = "doubted"  # follow it with reserve, learn nothing
+    HIDDEN = "hidden"  # the target is not there
+
+
+@dataclass(frozen=True)
+class Evidence:
+    """What speaks for the place that was found.
+
+    Attributes:
+        template: mean score of the base ensembles there, about 1 for the target as learnt.
+        colour: the colours' likelihood there, 0..1.
+        rival: highest mean score of the base ensembles elsewhere in the window.
+    """
+
+    template: float
+    colour: float
+    rival: float
+
+
+@dataclass(frozen=True)
+class TrustLimits:
+    """Thresholds of the verdict; see TrackerConfig for their meaning."""
+
+    hidden: float
+    doubt_template: float
+    doubt_rival: float
+    return_template: float
+    lost_after: float
+
+
+class Trust:
+    """Judges each frame and keeps the state TRACKING, COASTING or LOST.
+
+    Args:
+        limits: thresholds.
+    """
+
+    def __init__(self, limits: TrustLimits) -> None:
+        self._limits = limits
+        self._template = 1.0
+        self._colour: float | None = None
+        self._frames = 0
+        self._hidden_for = 0.0
+        self.hidden_frames = 0
+        self.state = State.TRACKING
+        self.score = 1.0
+        self.hidden_frames = 0
+
+    def judge(self, evidence: Evidence, dt: float) -> Verdict:
+        """Judge one frame; sets ``state`` and ``score``.
+
+        Args:
+            evidence: of the best place of this frame.
+            dt: time since the last frame, s.
+        """
+        self._frames += 1
+        if self._colour is None:
+            self._colour = evidence.colour
+        template = evidence.template / self._template
+        colour = evidence.colour / max(self._colour, 1e-6)
+        verdict = self._verdict(template, colour, evidence.rival / max(evidence.template, 1e-6))
+        self.score = self._probability(template, colour, evidence)
+        if verdict is Verdict.HIDDEN:
+            self._hidden_for += dt
+            self.hidden_frames += 1
+            lost = self._hidden_for > self._limits.lost_after or self.state is State.LOST
+            self.state = State.LOST if lost else State.COASTING
+            self.score = 0.0 if lost else min(self.score, 0.5)
+            return verdict
+        self._hidden_for = 0.0
+        self.hidden_frames = 0
+        self.state = State.TRACKING
+        if verdict is Verdict.SEEN:
+            self._template += _RUNNING_RATE * (evidence.template - self._template)
+            self._colour += _RUNNING_RATE * (evidence.colour - self._colour)
+        return verdict
+
+    def _verdict(self, template: float, colour: float, rival: float) -> Verdict:
+        """The rules; template and colour relative to their means, rival to the peak."""
+        limits = self._limits
+        if self.state is not State.TRACKING and template < limits.return_template:
+            return Verdict.HIDDEN
+        old = self._frames > _YOUNG
+        if template < _NEVER_BELOW or (old and template * colour**_COLOUR_POWER < limits.hidden):
+            return Verdict.HIDDEN
+        ambiguous = template < limits.doubt_template and rival > limits.doubt_rival
+        return Verdict.DOUBTED if ambiguous and old else Verdict.SEEN
+
+    @staticmethod
+    def _probability(template: float, colour: float, evidence: Evidence) -> float:
+        """Probability that the box is right (IoU over 0.5)."""
+        logit = (
+            _BIAS
+            + _BY_TEMPLATE * min(template, 1.2)
+            + _BY_COLOUR * min(colour, 1.2)
+            + _BY_RIVAL * evidence.rival
+        )
+        return 1 / (1 + math.exp(-logit))
