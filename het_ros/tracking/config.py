@@ -74,7 +74,7 @@ class TrackerConfig:
         high=400,
     )
     learning_rate: float = parameter(
-        0.98, "lambda, weight of the old value at an update", low=0, high=1
+        0.985, "lambda, weight of the old value at an update", low=0, high=1
     )
     sigma_floor: float = parameter(
         0.05,
@@ -89,7 +89,7 @@ class TrackerConfig:
         0.12, "ridge: deviation of the labels", unit="target sides", low=0.01, high=1
     )
     target_emphasis: float = parameter(
-        10.0, "ridge: how much more the target's places weigh than background", low=0, high=1e4
+        20.0, "ridge: how much more the target's places weigh than background", low=0, high=1e4
     )
     # Middle layer: combination.
     combination: str = parameter(
