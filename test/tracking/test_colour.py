@@ -115,7 +115,7 @@ def test_a_target_wholly_outside_the_window_is_survived(corner):
     model.learn(FEW, corner)
     found = model.likelihood(FEW)
     assert np.isfinite(found).all()
-    assert (0 <= found.min()) and (found.max() <= 1)
+    assert 0 <= found.min() <= found.max() <= 1
 
 
 def test_a_target_that_fills_the_window_has_no_surroundings():
