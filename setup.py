@@ -13,13 +13,14 @@ COMMANDS = {
     "make_bag": "het_ros.tools.make_bag",
     "play": "het_ros.tools.play",
     "replay": "het_ros.tools.replay",
+    "run": "het_ros.tools.run",
     "evaluate": "het_ros.evaluation.cli",
     "follower_example": "het_ros.ros.follower_example",
 }
 
 # What scoring, tables and pictures of `evaluate` and `bench` need beside a cv2.
 SCORING = [
-    "joblib>=1.2",
+    "joblib>=1.4",
     "threadpoolctl>=3.0",
     "jinja2>=3.0",
     "pyyaml>=5.4",
@@ -35,6 +36,7 @@ EXTRAS = {
         "ros-jazzy-rclpy>=7.1,<8",
         "ros-jazzy-common-interfaces>=5.3,<6",
         "ros-jazzy-rmw-fastrtps-cpp>=8.4,<9",
+        "threadpoolctl>=3.0",
     ],
     # One cv2 package an environment: this one, or the contrib one of `evaluate`.
     "opencv": ["opencv-python-headless>=4.6"],

@@ -10,6 +10,7 @@ from rclpy.exceptions import InvalidNodeNameException, ParameterException
 from rclpy.executors import ExternalShutdownException, SingleThreadedExecutor
 from rclpy.utilities import remove_ros_args
 
+from het_ros.ros.threads import one_thread
 from het_ros.ros.tracker_node import TrackerNode
 
 
@@ -28,6 +29,7 @@ def main(args: list[str] | None = None) -> int:
     )
     options = parser.parse_args(remove_ros_args(argv)[1:])
     nodes: list[TrackerNode] = []
+    one_thread()
     try:
         rclpy.init(args=argv)
         executor = SingleThreadedExecutor()

@@ -19,6 +19,7 @@ from rclpy.exceptions import ParameterException
 from rclpy.serialization import deserialize_message, serialize_message
 from tqdm import tqdm
 
+from het_ros.ros.threads import one_thread
 from het_ros.ros.tracker_node import TrackerNode
 from het_ros.tools.bag_messages import stamp_of
 from het_ros.tools.bag_reader import BagReader, header_stamp
@@ -127,6 +128,7 @@ def main(argv: Sequence[str] | None = None) -> int:
         help="a parameter of the node",
     )  # fmt: skip
     options = parser.parse_args(argv)
+    one_thread()
     folder = ResultsFolder(options.out)
     try:
         with BagReader(options.bag, options.image_topic) as bag:
