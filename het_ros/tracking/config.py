@@ -118,14 +118,14 @@ class TrackerConfig:
     )
     # Top layer: adaptive Kalman filter.
     acceleration: float = parameter(
-        40.0,
+        80.0,
         "deviation of the target's acceleration, which makes Q(0)",
         unit="target sides/s^2",
         low=0,
         high=1e4,
     )
     measurement_noise: float = parameter(
-        0.05,
+        0.1,
         "deviation of a measurement, which makes R(0)",
         unit="target sides",
         low=1e-4,
