@@ -40,12 +40,18 @@ class Outcome:
         pixels: its image, or None where nothing needed it.
         estimate: of this frame, or None without a track.
         published: whether it is to be published: not while it is older than what was.
+        track: number of the track.
+        state, reason, age: of the track after this frame, see :class:`TrackingSession`.
     """
 
     frame: Frame
     pixels: Pixels | None
     estimate: Estimate | None
     published: bool
+    track: int
+    state: State
+    reason: str
+    age: float
 
 
 class Pursuit:
@@ -157,7 +163,17 @@ class Pursuit:
     def _outcome(self, frame: Frame, pixels: Pixels | None, estimate: Estimate | None) -> Outcome:
         published = frame.stamp >= self._published
         self._published = max(self._published, frame.stamp)
-        return Outcome(frame, pixels, estimate, published)
+        session = self.session
+        return Outcome(
+            frame,
+            pixels,
+            estimate,
+            published,
+            self.track,
+            session.state,
+            session.reason,
+            session.age,
+        )
 
     # Boxes ----------------------------------------------------------------------------------
 

@@ -20,35 +20,22 @@ from sensor_msgs.msg import CameraInfo, CompressedImage, Image, RegionOfInterest
 from std_msgs.msg import Header
 from std_srvs.srv import SetBool, Trigger
 
-from het_ros.ros.debug_image import debug_message, drawn
-from het_ros.ros.detections import detections_message, vision_msgs
-from het_ros.ros.diagnostics import Health
+from het_ros.ros.answers import Answers
+from het_ros.ros.detections import vision_msgs
 from het_ros.ros.frames import Conversion, Frame, ImageMessage
 from het_ros.ros.hints import Hints
-from het_ros.ros.images import ImageError
-from het_ros.ros.messages import (
-    BoxError,
-    box_from_polygon,
-    box_from_roi,
-    polygon_from_box,
-    pose_from_estimate,
-    stamp_ns,
-    twist_from_estimate,
-)
+from het_ros.ros.messages import BoxError, box_from_polygon, box_from_roi, stamp_ns
 from het_ros.ros.outputs import OUTPUTS, RELIABLE, Outputs, Tap
 from het_ros.ros.parameters import NodeConfig, declare, read
-from het_ros.ros.pursuit import Outcome, Pursuit
+from het_ros.ros.pursuit import Pursuit
 from het_ros.ros.quality import explain_silence, subscription_events
 from het_ros.ros.space import Space
-from het_ros.ros.stamps import SECOND
-from het_ros.ros.status import Status, status_message
 from het_ros.tracking.box import Box
 from het_ros.tracking.config import TrackerConfig
 from het_ros.tracking.estimate import State
 
 # Depth 1: with a deeper queue a busy node works on old images, and latency grows by the depth.
 NEWEST_ONLY = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
-SEEN = (State.TRACKING, State.COASTING)
 
 
 def _told(transition: Callable[..., TransitionCallbackReturn]) -> Callable[..., Any]:
@@ -107,12 +94,11 @@ class TrackerNode(LifecycleNode):
         self._settings = read(self, NodeConfig)
         self._pursuit = self._new_pursuit()
         self.space = Space(self._settings, self._hints)
-        self._health = Health()
         self._active = False
         self._enabled = True
-        self._drawn = 0
         self._inputs: list[tuple[Callable[[Any], Any], Any]] = []
         self._outputs = Outputs(self, {}, None)
+        self._answers = self._new_answers()
         self.add_on_set_parameters_callback(self._check_parameters)
         self.add_post_set_parameters_callback(self._apply_parameters)
         self._failure: Exception | None = None
@@ -143,6 +129,7 @@ class TrackerNode(LifecycleNode):
         else:
             kinds["detections"] = vision_msgs.Detection2DArray
         self._outputs = Outputs(self, kinds, self._tap)
+        self._answers = self._new_answers()
         self._diagnostics = self.create_publisher(DiagnosticArray, "/diagnostics", RELIABLE)
         self._offered = [
             self.create_service(Trigger, "~/reset", self._on_reset),
@@ -213,6 +200,10 @@ class TrackerNode(LifecycleNode):
     def _new_pursuit(self) -> Pursuit:
         return Pursuit(read(self, TrackerConfig), self._settings, self.get_logger())
 
+    def _new_answers(self) -> Answers:
+        name = self.get_fully_qualified_name()
+        return Answers(name, self._outputs, self.space, self._settings)
+
     def _subscribe(self, kind: Any, topic: str, callback: Any, qos: QoSProfile) -> Any:
         subscription = self.create_subscription(
             kind,
@@ -260,7 +251,7 @@ class TrackerNode(LifecycleNode):
             self._pursuit.refuse(error)
             return
         if outcome is not None and outcome.published:
-            self._publish(outcome)
+            self._answers.publish(outcome)
         if self._pursuit.busy:
             self._work()
 
@@ -270,7 +261,7 @@ class TrackerNode(LifecycleNode):
         while self._pursuit.busy:
             outcome = self._pursuit.step(hurry=spun)
             if outcome is not None and outcome.published:
-                self._publish(outcome)
+                self._answers.publish(outcome)
             if spun:
                 if self._pursuit.busy:
                     self._wake.trigger()
@@ -286,67 +277,6 @@ class TrackerNode(LifecycleNode):
             return int(self.get_clock().now().nanoseconds)
         return stamp
 
-    # Outputs --------------------------------------------------------------------------------
-
-    def _publish(self, outcome: Outcome) -> None:
-        """Publish an outcome; in LOST and without a track the status alone."""
-        header, estimate, pixels = outcome.frame.header, outcome.estimate, outcome.pixels
-        send = self._outputs.send
-        if estimate is not None and pixels is not None and estimate.state in SEEN:
-            box, size = estimate.box, (pixels.shape[1], pixels.shape[0])
-            track = self._pursuit.track
-            send("box", lambda: polygon_from_box(box, header))
-            send("pose", lambda: pose_from_estimate(estimate, header))
-            send("velocity", lambda: twist_from_estimate(estimate, header))
-            send("bearing", lambda: self.space.bearing(box, size, header))
-            if estimate.state is State.TRACKING:  # else the depth is of what hides the target
-                send("target_pose", lambda: self.space.pose(box, size, header, track))
-            if "detections" in self._outputs:
-                send("detections", lambda: detections_message(estimate, track, header))
-        send("status", lambda: self._status(outcome))
-        self._health.processed(time.monotonic() - outcome.frame.arrival)
-        self._draw(outcome)
-
-    def _status(self, outcome: Outcome) -> DiagnosticArray:
-        session = self._pursuit.session
-        status = Status(
-            state=session.state,
-            score=0.0 if outcome.estimate is None else float(outcome.estimate.score),
-            latency=time.monotonic() - outcome.frame.arrival,
-            age=session.age,
-            reason=session.reason,
-        )
-        return status_message(status, self.get_fully_qualified_name(), outcome.frame.header)
-
-    def _draw(self, outcome: Outcome) -> None:
-        """Draw the debug image for subscribers, ``debug_rate`` times a second at most."""
-        stamp = outcome.frame.stamp
-        early = 0 <= stamp - self._drawn < SECOND / self._settings.debug_rate
-        if early or not self._outputs.heard("debug_image"):
-            return
-        self._drawn = stamp
-        pixels = outcome.pixels
-        if pixels is None:
-            try:
-                pixels = outcome.frame.pixels(self._settings.white_level)
-            except ImageError:
-                return
-        image = drawn(pixels, outcome.estimate, self.state, self.reason)
-        self._outputs.send("debug_image", lambda: debug_message(image, outcome.frame.header))
-
-    def _report(self) -> None:
-        """Publish on /diagnostics."""
-        self._diagnostics.publish(
-            self._health.report(
-                self.get_fully_qualified_name(),
-                self.get_clock().now().to_msg(),
-                self._settings.diagnostics_period,
-                self._pursuit.counts,
-                self.state.value,
-                self._active and self._enabled,
-            )
-        )
-
     # Parameters, services, hints ------------------------------------------------------------
 
     def _check_parameters(self, parameters: list[Parameter]) -> SetParametersResult:
@@ -361,7 +291,8 @@ class TrackerNode(LifecycleNode):
 
     def _apply_parameters(self, _: list[Parameter]) -> None:
         """Take new values between two frames: the node's at once, the tracker's with a new box."""
-        self._settings = self.space.settings = read(self, NodeConfig)
+        self._settings = read(self, NodeConfig)
+        self.space.settings = self._answers.settings = self._settings
         self._pursuit.configure(read(self, TrackerConfig), self._settings)
 
     def _on_reset(self, _: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
@@ -384,3 +315,16 @@ class TrackerNode(LifecycleNode):
         if not self._pursuit.started and self._enabled:
             timeout = self._settings.image_timeout
             self._hints.once("silence", explain_silence(self, self._image_input, timeout))
+
+    def _report(self) -> None:
+        """Publish on /diagnostics."""
+        self._diagnostics.publish(
+            self._answers.health.report(
+                self.get_fully_qualified_name(),
+                self.get_clock().now().to_msg(),
+                self._settings.diagnostics_period,
+                self._pursuit.counts,
+                self.state.value,
+                self._active and self._enabled,
+            )
+        )

@@ -11,7 +11,7 @@ from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 from sensor_msgs.msg import CameraInfo, Image
 
 from het_ros import Box, Estimate, State
-from het_ros.ros import tracker_node
+from het_ros.ros import answers, tracker_node
 from het_ros.ros.debug_image import drawn
 from het_ros.ros.detections import detections_message
 from het_ros.ros.images import to_array
@@ -120,7 +120,7 @@ def test_detections_as_vision_msgs_has_them():
 def test_the_id_is_the_tracks(hand, made_footage, monkeypatch):
     ids = []
     monkeypatch.setattr(
-        tracker_node, "detections_message", lambda estimate, track, header: ids.append(track)
+        answers, "detections_message", lambda estimate, track, header: ids.append(track)
     )
     hand.node._outputs._publishers["detections"] = hand.node._outputs._publishers["box"]
     for i in (1, 2):
@@ -162,7 +162,7 @@ def test_debug_image_is_drawn_for_subscribers_only_and_not_too_often(
         drawings.append(arguments)
         return drawn(*arguments)
 
-    monkeypatch.setattr(tracker_node, "drawn", counted)
+    monkeypatch.setattr(answers, "drawn", counted)
     node = graph.add(TrackerNode(context=graph.context))
     for i in range(5):
         node.on_image(image_message(frames[i], header_at(1 + i * FRAME_TIME)))

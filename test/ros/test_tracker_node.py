@@ -298,7 +298,7 @@ def test_nothing_is_made_for_nobody(graph, made_footage, monkeypatch):
         "twist_from_estimate",
         "status_message",
     ):
-        monkeypatch.setattr(f"het_ros.ros.tracker_node.{name}", refuse)
+        monkeypatch.setattr(f"het_ros.ros.answers.{name}", refuse)
     node.on_image(image_message(frames[0], header_at(1.0)))
     node.on_init_box(box_message(box))
     node.on_image(image_message(frames[1], header_at(1 + FRAME_TIME)))
