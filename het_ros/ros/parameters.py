@@ -40,6 +40,9 @@ class NodeConfig:
         low=1,
         high=65535,
     )
+    max_megapixels: float = parameter(
+        50.0, "larger images are refused", unit="Mpx", low=0.001, high=1000.0
+    )
     max_gap: float = parameter(
         2.0, "a longer gap between two images loses the track", unit="s", low=0.02, high=3600.0
     )

@@ -22,6 +22,8 @@ from het_ros.tracking.box import Box
 from het_ros.tracking.config import TrackerConfig
 from het_ros.tracking.estimate import Estimate, State
 
+MEGA = 1_000_000
+
 
 @dataclass(frozen=True)
 class Request:
@@ -253,6 +255,12 @@ class Pursuit:
         if self._request is None and not self.session.running and kind in self._readable:
             return None
         pixels = frame.pixels(self.settings.white_level)
+        height, width = pixels.shape[:2]
+        if width * height > self.settings.max_megapixels * MEGA:
+            raise ImageError(
+                f"{width} x {height} px are more than max_megapixels "
+                f"({self.settings.max_megapixels:g}): send smaller images, or raise it"
+            )
         if len(self._readable) < 100:
             self._readable.add(kind)
         return pixels

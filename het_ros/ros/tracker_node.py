@@ -130,7 +130,12 @@ class TrackerNode(LifecycleNode):
             kinds["detections"] = vision_msgs.Detection2DArray
         self._outputs = Outputs(self, kinds, self._tap)
         self._answers = self._new_answers()
-        self._diagnostics = self.create_publisher(DiagnosticArray, "/diagnostics", RELIABLE)
+        self._diagnostics = self.create_publisher(
+            DiagnosticArray,
+            "/diagnostics",
+            copy(RELIABLE),
+            qos_overriding_options=QoSOverridingOptions.with_default_policies(),
+        )
         self._offered = [
             self.create_service(Trigger, "~/reset", self._on_reset),
             self.create_service(SetBool, "~/enable", self._on_enable),

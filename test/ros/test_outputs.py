@@ -248,5 +248,5 @@ def test_every_topic_has_qos_parameters(graph):
     names = list(node.get_parameters_by_prefix("qos_overrides"))
     for topic in ("/image", "/depth", "/camera_info", "/tracker/init_box", "/tracker/init_roi"):
         assert f"{topic}.subscription.reliability" in names
-    for topic in tracker_node.OUTPUTS:
-        assert f"/tracker/{topic}.publisher.depth" in names
+    for topic in (*(f"/tracker/{name}" for name in tracker_node.OUTPUTS), "/diagnostics"):
+        assert f"{topic}.publisher.depth" in names

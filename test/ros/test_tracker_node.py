@@ -215,6 +215,15 @@ def test_an_unreadable_image_is_left_out(hand, made_footage, spoil):
     assert hand.state_of(hand.image(frames[4], 1 + 4 * FRAME_TIME)) == "TRACKING"
 
 
+def test_an_image_larger_than_allowed_is_refused(graph, made_footage):
+    frames, _ = made_footage
+    limit = Parameter("max_megapixels", value=0.019)  # the frames have 0.0192
+    hand = ByHand(graph, parameter_overrides=[limit])
+    assert hand.image(frames[0], 1.0) == {}
+    assert hand.node._pursuit.counts["unreadable"] == 1
+    assert hand.state_of(hand.image(frames[1][:100], 1 + FRAME_TIME)) == "IDLE"
+
+
 def test_an_image_of_another_size_loses_the_track(hand, made_footage):
     frames = started(hand, made_footage)
     outputs = hand.image(cv2.resize(frames[3], (80, 60)), 1 + 3 * FRAME_TIME)
