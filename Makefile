@@ -90,7 +90,7 @@ evaluate: $(BUILT) $(PEERS)/.ready ## Score this tracker and OpenCV's on DATA=fo
 
 bench: OUT ?= out/bench
 bench: $(BUILT) $(PEERS)/.ready ## Speed of the core and of the node, as ratios to the peers
-	@$(PEERS_SPACE); python -m het_ros.tools.bench --out '$(OUT)' $(if $(DATA),--data '$(DATA)') $(BENCH)
+	@$(PEERS_SPACE); python -m het_ros.bench.cli --out '$(OUT)' $(if $(DATA),--data '$(DATA)') $(BENCH)
 
 MINUTES ?= 5
 fuzz: $(BUILT) ## Random and broken input, MINUTES long

@@ -1,0 +1,119 @@
+"""A camera at a steady rate, and the answers that come back to it."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+
+from diagnostic_msgs.msg import DiagnosticArray
+from geometry_msgs.msg import PolygonStamped
+from rclpy.node import Node
+from rclpy.qos import QoSProfile, ReliabilityPolicy
+from sensor_msgs.msg import Image
+from std_msgs.msg import Header
+
+from het_ros.bench.footage import Footage
+from het_ros.ros.debug_image import debug_message
+from het_ros.ros.messages import polygon_from_box, stamp_ns
+from het_ros.ros.status import status_values
+from het_ros.tracking.box import Box
+
+QOS = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)  # what camera drivers offer
+FIRST_STAMP = 1000  # s
+WARM_UP = 1.0  # s, that are not counted
+GRACE = 1.0  # s, for answers that are on their way at the end
+
+Spin = Callable[[float], None]
+
+
+class Camera(Node):
+    """Publishes images and takes boxes and statuses, each with the time it took.
+
+    Attributes:
+        rate: frames/s.
+        sent: when each image was published, s, by its stamp, ns; without those of the warm-up.
+        boxes: s from there to the box, by stamp.
+        own: s that the tracker says it took from arrival to publishing, by stamp.
+        tracking: number of boxes with the state TRACKING.
+    """
+
+    def __init__(self, footage: Footage, rate: float, tracker: str = "tracker") -> None:
+        super().__init__("camera")
+        self.rate = rate
+        self._messages = [debug_message(footage[i], Header()) for i in range(len(footage))]
+        self._footage = footage
+        self._images = self.create_publisher(Image, "image", QOS)
+        self._init = self.create_publisher(PolygonStamped, f"{tracker}/init_box", 10)
+        self.create_subscription(PolygonStamped, f"{tracker}/box", self._on_box, 50)
+        self.create_subscription(DiagnosticArray, f"{tracker}/status", self._on_status, 50)
+        self._tracker = tracker
+        self._published: dict[int, float] = {}
+        self._counted_from = 0
+        self.boxes: dict[int, float] = {}
+        self.own: dict[int, float] = {}
+        self.states: dict[int, str] = {}
+
+    @property
+    def sent(self) -> dict[int, float]:
+        """When each counted image was published."""
+        return {s: t for s, t in self._published.items() if s >= self._counted_from}
+
+    def connected(self) -> bool:
+        """Whether camera and tracker found each other, in both directions."""
+        topics = (f"{self._tracker}/box", f"{self._tracker}/status")
+        publishers = (self._images, self._init)
+        return all(self.count_publishers(topic) > 0 for topic in topics) and all(
+            publisher.get_subscription_count() > 0 for publisher in publishers
+        )
+
+    def start(self, box: Box) -> None:
+        """Send the first box, for the newest image."""
+        self._init.publish(polygon_from_box(box, Header()))
+
+    def run(self, seconds: float, box: Box, spin: Spin, on_counting: Callable[[], None]) -> None:
+        """Publish for so long, after a warm-up of ``WARM_UP`` s.
+
+        Args:
+            seconds: how long images are counted.
+            box: the target in the first image.
+            spin: serves callbacks for at most so many seconds.
+            on_counting: called when the counting begins.
+        """
+        begun = time.perf_counter()
+        for i in range(round((WARM_UP + seconds) * self.rate)):
+            if i == round(WARM_UP * self.rate):
+                self._counted_from = self._stamp(i)
+                on_counting()
+            self._publish(i)
+            if i == 0:
+                self.start(box)
+            self._spin_until(begun + (i + 1) / self.rate, spin)
+
+    def finish(self, spin: Spin) -> None:
+        """Take the answers that are still on their way."""
+        self._spin_until(time.perf_counter() + GRACE, spin)
+
+    def _stamp(self, index: int) -> int:
+        return FIRST_STAMP * 10**9 + round(index * 1e9 / self.rate)
+
+    def _publish(self, index: int) -> None:
+        stamp = self._stamp(index)
+        message = self._messages[self._footage.at(index)]
+        message.header.stamp.sec, message.header.stamp.nanosec = divmod(stamp, 10**9)
+        self._published[stamp] = time.perf_counter()
+        self._images.publish(message)
+
+    def _spin_until(self, end: float, spin: Spin) -> None:
+        while (left := end - time.perf_counter()) > 0:
+            spin(left)
+
+    def _on_box(self, message: PolygonStamped) -> None:
+        stamp = stamp_ns(message.header)
+        if stamp in self._published and stamp not in self.boxes:
+            self.boxes[stamp] = time.perf_counter() - self._published[stamp]
+
+    def _on_status(self, message: DiagnosticArray) -> None:
+        values = status_values(message)
+        stamp = stamp_ns(message.header)
+        self.own[stamp] = float(values["latency_ms"]) / 1e3
+        self.states[stamp] = values["state"]

@@ -1,0 +1,120 @@
+"""The core beside OpenCV's trackers: the same frames, one thread, taking turns."""
+
+from __future__ import annotations
+
+import tempfile
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from het_ros.bench.figures import percentiles, speed_over
+from het_ros.bench.floor import floor, sizes_of
+from het_ros.evaluation.opencv_peers import PEERS, available
+from het_ros.evaluation.readers import read_sequences
+from het_ros.evaluation.sequences import Frames, Sequence
+from het_ros.evaluation.timing import time_trackers
+from het_ros.evaluation.trackers import tracker_spec
+from het_ros.scene import Scene, SceneConfig
+from het_ros.tracking.config import TrackerConfig
+
+OURS = "het"
+PAPER = "het-paper"
+COMPARED = ("csrt", "kcf", "mil", "boosting", "medianflow", "mosse")
+WARM_UP = 2  # updates that are not counted: they make the buffers
+RENDERED = "rendered street"
+
+Times = Mapping[tuple[str, str], NDArray[np.float64]]
+
+
+def sequences_for(data: Path | None, out: Path, frames: int) -> list[Sequence]:
+    """The sequences of a folder; without one a rendered street, written to ``out/rendered``.
+
+    Raises:
+        ValueError: the folder holds no sequence.
+    """
+    if data is not None:
+        return read_sequences(data)
+    scene = Scene(SceneConfig())
+    folder = out / "rendered"
+    folder.mkdir(parents=True, exist_ok=True)
+    files, boxes = [], []
+    for i in range(min(frames + 1, len(scene))):
+        frame = scene.frame(i)
+        file = folder / f"{i:05d}.png"
+        cv2.imwrite(str(file), frame.image)
+        files.append(str(file))
+        boxes.append(frame.box.as_tuple() if frame.box else (np.nan,) * 4)
+    return [Sequence(RENDERED, Frames(tuple(files), scene.config.rate), np.array(boxes))]
+
+
+def core(sequences: list[Sequence], frames: int, quiet: bool = False) -> dict[str, Any]:
+    """Time this tracker, the paper's configuration and every peer that this OpenCV has.
+
+    Args:
+        sequences: what they follow.
+        frames: updates timed on each sequence.
+        quiet: no progress bar.
+    """
+    names = [OURS, PAPER, *(name for name in COMPARED if name in available())]
+    specs = [tracker_spec(name) for name in names]
+    # A place of its own: what an earlier run measured is of another machine or another day.
+    with tempfile.TemporaryDirectory() as folder:
+        timing = time_trackers(specs, sequences, frames, Path(folder), quiet=quiet)
+    seconds = {key: times[WARM_UP:] for key, times in timing.seconds.items()}
+    found = summary(seconds, names, [sequence.name for sequence in sequences])
+    found["floor"] = floor(sizes_of(TrackerConfig()))
+    found["ratio_to_floor"] = found["p50_ms"] / found["floor"]["total_ms"]
+    with_learning = found["floor"]["total_ms"] + found["floor"]["learning_product_ms"]
+    found["ratio_to_floor_with_learning"] = found["p50_ms"] / with_learning
+    found |= {"frames": frames, "load": timing.load}
+    return found
+
+
+def summary(seconds: Times, names: list[str], sequences: list[str]) -> dict[str, Any]:
+    """The figures of timed updates.
+
+    Args:
+        seconds: times of the updates, s, by (tracker, sequence); NaN where one failed.
+        names: the trackers, the first of them this one.
+        sequences: the sequences.
+
+    Returns:
+        ``trackers``: percentiles of all updates of each, and how many times faster this tracker
+        is; ``sequences``: median ms by sequence and tracker; the percentiles of this tracker;
+        ``p99_over_p50`` over all its updates, and ``p99_over_p50_by_sequence``, the median of
+        what it is on each sequence alone; ``speed_over_csrt`` and ``paper_speed_over_csrt``.
+    """
+
+    def of(name: str) -> list[NDArray[np.float64]]:
+        return [seconds[name, sequence] for sequence in sequences]
+
+    ours, paper = of(OURS), of(PAPER)
+    own = percentiles(np.concatenate(ours))
+    spread = [percentiles(times) for times in ours]
+    nothing = [np.array([np.nan])] * len(sequences)
+    csrt = of("csrt") if "csrt" in names else nothing
+    return {
+        **own,
+        "p99_over_p50": own["p99_ms"] / own["p50_ms"],
+        "p99_over_p50_by_sequence": float(np.median([s["p99_ms"] / s["p50_ms"] for s in spread])),
+        "speed_over_csrt": speed_over(ours, csrt),
+        "paper_speed_over_csrt": speed_over(paper, csrt),
+        "paper": percentiles(np.concatenate(paper)),
+        "trackers": {
+            name: {
+                **percentiles(np.concatenate(of(name))),
+                "het_is_faster_by": speed_over(ours, of(name)),
+                "paper_is_faster_by": speed_over(paper, of(name)),
+            }
+            for name in names
+        },
+        "sequences": {
+            sequence: {name: percentiles(seconds[name, sequence])["p50_ms"] for name in names}
+            for sequence in sequences
+        },
+        "absent_peers": [name for name in COMPARED if name not in names and name in PEERS],
+    }
