@@ -21,7 +21,7 @@ WORKSPACE := $(ROS); source install/setup.bash
 PEERS_SPACE := $(CLEAN); source $(PEERS)/bin/activate; export AMENT_PREFIX_PATH="$$VIRTUAL_ENV"; \
 	source install/setup.bash
 
-.PHONY: help setup build run test evaluate bench fuzz soak docs format clean
+.PHONY: help setup build run test evaluate bench docs format clean
 
 help: ## What there is to make
 	@grep -E '^[a-z]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:[^#]*## /\t/' | expand -t 12
@@ -29,7 +29,7 @@ help: ## What there is to make
 	@echo 'make run [VIDEO=file INIT=x,y,w,h | SEQUENCE=folder] [OUT=out/run]'
 	@echo 'make evaluate DATA=folder [OUT=out/evaluate] [TRACKERS=het,csrt] [SEEDS=3]'
 	@echo '     [PROTOCOL=ope|tre|sre|realtime|restart] [SEQUENCES=a,b] [SCHEDULER=tcp://host:8786]'
-	@echo 'make bench [OUT=out/bench] [DATA=folder]; make fuzz|soak [MINUTES=5]'
+	@echo 'make bench [OUT=out/bench] [DATA=folder]'
 
 # Set-up -------------------------------------------------------------------------------------
 
@@ -91,13 +91,6 @@ evaluate: $(BUILT) $(PEERS)/.ready ## Score this tracker and OpenCV's on DATA=fo
 bench: OUT ?= out/bench
 bench: $(BUILT) $(PEERS)/.ready ## Speed of the core and of the node, as ratios to the peers
 	@$(PEERS_SPACE); python -m het_ros.bench.cli --out '$(OUT)' $(if $(DATA),--data '$(DATA)') $(BENCH)
-
-MINUTES ?= 5
-fuzz: $(BUILT) ## Random and broken input, MINUTES long
-	@$(WORKSPACE); python -m het_ros.tools.fuzz --minutes $(MINUTES)
-
-soak: $(BUILT) ## The node at 30 frames/s, MINUTES long: memory, latency, file descriptors
-	@$(WORKSPACE); python -m het_ros.tools.soak --minutes $(MINUTES)
 
 docs: $(BUILT) ## Write what is generated from the parameter tables
 	@$(WORKSPACE); python -m het_ros.ros.reference .

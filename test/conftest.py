@@ -13,8 +13,13 @@ import time
 from pathlib import Path
 
 import cv2
+import hypothesis
 import numpy as np
 import pytest
+
+# A busy machine is no failure: no limit of time for an example.
+hypothesis.settings.register_profile("patient", deadline=None)
+hypothesis.settings.load_profile("patient")
 
 ROOT = Path(__file__).parents[1]
 EXECUTABLES = ROOT / "install" / "het_ros" / "lib" / "het_ros"
