@@ -68,3 +68,84 @@ def test_uncertainty_grows_without_measurements():
     motion.coast()
     assert (np.diag(motion.covariance)[:2] > np.diag(before)[:2]).all()
     np.testing.assert_allclose(motion.covariance, motion.covariance.T)
+
+
+def walking(speed=(40.0, -25.0), seconds=3.0, dt=1 / 30, shake=0.0):
+    """A filter that has watched a steady walk, and where it then is."""
+    rng, motion, t = np.random.default_rng(0), kalman(), 0.0
+    centre = np.array([50.0, 60.0])
+    while t < seconds:
+        t += dt
+        motion.predict(dt)
+        motion.correct(centre + t * np.array(speed) + shake * rng.normal(size=2), 0.6)
+    return motion, centre + t * np.array(speed)
+
+
+@pytest.mark.parametrize("dt", [1 / 60, 1 / 30, 0.1])
+def test_a_hidden_target_goes_on_and_comes_to_rest(dt):
+    """It moves as it moved, slower and slower, and never farther than a finite way."""
+    motion, start = walking(dt=dt)
+    places, speeds = [motion.centre], [40.0]
+    for _ in range(int(6 / dt)):
+        motion.predict(dt)
+        motion.coast()
+        places.append(motion.centre)
+        speeds.append(np.hypot(*motion.velocity))
+    way = np.array(places) - start
+    assert way[1] @ [40, -25] > 0
+    assert (np.diff(speeds[1:]) < 0).all()
+    assert speeds[-1] < 0.01
+    steps = np.linalg.norm(np.diff(places, axis=0), axis=1)
+    assert steps[-1] < 1e-2
+    along = way[-1] / np.array([40, -25])
+    np.testing.assert_allclose(along, along.mean(), rtol=0.1)  # in the direction it had
+    assert 0.2 < along.mean() < 2  # as far as it would have come in that many s
+
+
+def test_the_way_coasted_does_not_depend_on_the_frame_rate():
+    ways = []
+    for dt in (1 / 60, 1 / 15):
+        motion, start = walking(dt=1 / 30)
+        for _ in range(round(2 / dt)):
+            motion.predict(dt)
+            motion.coast()
+        ways.append(np.linalg.norm(motion.centre - start))
+    assert ways[0] == pytest.approx(ways[1], rel=0.15)
+
+
+def test_coasting_is_as_steady_as_the_walk_was():
+    """The shake of the last frame's velocity is not what a hidden target goes on with."""
+    steady = []
+    for seed_shake in (0.0, 3.0):
+        motion, _ = walking(shake=seed_shake)
+        motion.predict(1 / 30)
+        motion.coast()
+        steady.append(motion.velocity)
+    np.testing.assert_allclose(steady[1], steady[0], atol=15)
+
+
+def test_uncertainty_grows_all_the_while_and_stays_symmetric():
+    motion, _ = walking()
+    before = np.diag(motion.covariance)[:2]
+    for _ in range(90):
+        motion.predict(1 / 30)
+        motion.coast()
+        now = np.diag(motion.covariance)[:2]
+        assert (now > before).all()
+        before = now
+        np.testing.assert_allclose(motion.covariance, motion.covariance.T)
+    assert (np.linalg.eigvalsh(motion.covariance) > 0).all()
+
+
+def test_a_target_that_came_back_starts_again():
+    motion, fresh = walking()[0], kalman()
+    for _ in range(20):
+        motion.predict(1 / 30)
+        motion.coast()
+    motion.restart(np.array([300.0, 10.0]))
+    np.testing.assert_array_equal(motion.centre, [300, 10])
+    assert motion.velocity == (0, 0)
+    np.testing.assert_allclose(motion.covariance, fresh.covariance)
+    motion.predict(1 / 30)
+    motion.coast()  # nothing is left of the walk before
+    np.testing.assert_allclose(motion.centre, [300, 10], atol=1e-9)

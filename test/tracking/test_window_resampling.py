@@ -1,0 +1,85 @@
+"""Windows at a resolution of their own, against each px looked up by itself."""
+
+import numpy as np
+import pytest
+
+from het_ros.tracking.window import cut_window
+
+
+def slow_bilinear(image, x, y):
+    """The image at a place in px counted from the middle of its first px, border repeated."""
+    column, row = int(np.floor(x)), int(np.floor(y))
+    total = 0.0
+    for r, c, share in [
+        (row, column, (1 - y + row) * (1 - x + column)),
+        (row, column + 1, (1 - y + row) * (x - column)),
+        (row + 1, column, (y - row) * (1 - x + column)),
+        (row + 1, column + 1, (y - row) * (x - column)),
+    ]:
+        inside = image[np.clip(r, 0, image.shape[0] - 1), np.clip(c, 0, image.shape[1] - 1)]
+        total = total + share * inside.astype(float)
+    return total
+
+
+@pytest.mark.parametrize("gray", [False, True], ids=["colour", "gray"])
+@pytest.mark.parametrize("scale", [(2.5, 1.7), (1.3, 1.3), (0.9, 0.8)], ids=str)
+@pytest.mark.parametrize("at", [(31.3, 22.8), (-4.4, 50.1), (100.0, 70.0)], ids=str)
+def test_a_finer_window_is_interpolated(noise, at, scale, gray):
+    image = noise[:, :, 0].copy() if gray else noise
+    window = cut_window(image, *at, 24, 18, scale)
+    assert window.pixels.shape[:2] == (18, 24)
+    for row in range(0, 18, 3):
+        for column in range(0, 24, 3):
+            x = at[0] + (column + 0.5) / scale[0] - 0.5
+            y = at[1] + (row + 0.5) / scale[1] - 0.5
+            np.testing.assert_allclose(
+                window.pixels[row, column], slow_bilinear(image, x, y), atol=4
+            )
+
+
+@pytest.mark.parametrize("scale", [0.5, 0.25, 0.12])
+def test_a_coarser_window_is_averaged(scale):
+    """Noise far finer than a window px leaves its mean, and little of its deviation."""
+    rng = np.random.default_rng(1)
+    fine = rng.integers(0, 256, (600, 800), np.uint8)
+    window = cut_window(fine, 100.3, 80.6, 40, 30, (scale, scale))
+    assert window.pixels.mean() == pytest.approx(fine.mean(), abs=6)
+    assert window.pixels.std() < 0.75 * fine.std()
+
+
+NOTHING_LEFT = pytest.mark.xfail(
+    reason="of a source of fewer px than half a step nothing is left to average", strict=False
+)
+
+
+@pytest.mark.parametrize(
+    "scale",
+    [(3.0, 2.0), (0.7, 0.7), (0.3, 0.2), pytest.param((0.02, 0.02), marks=NOTHING_LEFT)],
+    ids=str,
+)
+@pytest.mark.parametrize(
+    "at", [(-5000.0, 3.0), (5000.0, 3.0), (3.0, -5000.0), (3.0, 5000.0), (-3.3, -2.2)], ids=str
+)
+def test_windows_over_the_border_and_wholly_outside(at, scale):
+    flat = np.full((60, 80, 3), 90, np.uint8)
+    window = cut_window(flat, *at, 25, 19, scale)
+    assert window.pixels.shape == (19, 25, 3)
+    np.testing.assert_array_equal(window.pixels, 90)
+
+
+@pytest.mark.parametrize("shape", [(1, 1), (1, 90), (90, 1), (2, 3)], ids=str)
+@pytest.mark.parametrize("scale", [4.0, 0.9, 0.3])
+def test_images_of_a_few_px(shape, scale):
+    image = np.full(shape, 33, np.uint8)
+    window = cut_window(image, -2.5, -1.5, 12, 9, (scale, scale))
+    np.testing.assert_array_equal(window.pixels, 33)
+
+
+@pytest.mark.parametrize("cell", [1, 2, 4])
+def test_places_in_cells(cell):
+    window = cut_window(np.zeros((60, 80), np.uint8), 11.5, 7.5, 20, 20, (0.5, 0.8))
+    cells = window.in_cells(cell)
+    points = np.array([[20.0, 30.0], [11.5, 7.5]])
+    np.testing.assert_allclose(cells.to_window(points) * cell, window.to_window(points))
+    np.testing.assert_allclose(cells.to_image(cells.to_window(points)), points)
+    assert cells.pixels is window.pixels
