@@ -21,6 +21,7 @@ from het_ros.tracking.box import Box
 QOS = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)  # what camera drivers offer
 FIRST_STAMP = 1000  # s
 WARM_UP = 1.0  # s, that are not counted
+CALLBACKS = 6  # that an image brings about at most, in one process
 GRACE = 1.0  # s, for answers that are on their way at the end
 
 Spin = Callable[[float], None]
@@ -31,10 +32,9 @@ class Camera(Node):
 
     Attributes:
         rate: frames/s.
-        sent: when each image was published, s, by its stamp, ns; without those of the warm-up.
         boxes: s from there to the box, by stamp.
         own: s that the tracker says it took from arrival to publishing, by stamp.
-        tracking: number of boxes with the state TRACKING.
+        states: the track's state, by stamp.
     """
 
     def __init__(self, footage: Footage, rate: float, tracker: str = "tracker") -> None:
@@ -55,7 +55,7 @@ class Camera(Node):
 
     @property
     def sent(self) -> dict[int, float]:
-        """When each counted image was published."""
+        """When each image was published, s, by its stamp, ns; without those of the warm-up."""
         return {s: t for s, t in self._published.items() if s >= self._counted_from}
 
     def connected(self) -> bool:
@@ -79,7 +79,7 @@ class Camera(Node):
             spin: serves callbacks for at most so many seconds.
             on_counting: called when the counting begins.
         """
-        begun = time.perf_counter()
+        due = time.perf_counter()
         for i in range(round((WARM_UP + seconds) * self.rate)):
             if i == round(WARM_UP * self.rate):
                 self._counted_from = self._stamp(i)
@@ -87,7 +87,8 @@ class Camera(Node):
             self._publish(i)
             if i == 0:
                 self.start(box)
-            self._spin_until(begun + (i + 1) / self.rate, spin)
+            due = max(due + 1 / self.rate, time.perf_counter())
+            self._spin_until(due, spin)
 
     def finish(self, spin: Spin) -> None:
         """Take the answers that are still on their way."""
@@ -104,6 +105,9 @@ class Camera(Node):
         self._images.publish(message)
 
     def _spin_until(self, end: float, spin: Spin) -> None:
+        """Serve callbacks until then; also of a camera that is late, whose rate falls instead."""
+        for _ in range(CALLBACKS):
+            spin(0.0)
         while (left := end - time.perf_counter()) > 0:
             spin(left)
 

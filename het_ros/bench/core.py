@@ -11,8 +11,11 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from het_ros.bench.allocations import peak_of_a_frame
 from het_ros.bench.figures import percentiles, speed_over
 from het_ros.bench.floor import floor, sizes_of
+from het_ros.bench.footage import Footage
+from het_ros.bench.scaling import TARGET_IN_IMAGES, middle
 from het_ros.evaluation.opencv_peers import PEERS, available
 from het_ros.evaluation.readers import read_sequences
 from het_ros.evaluation.sequences import Frames, Sequence
@@ -70,6 +73,10 @@ def core(sequences: list[Sequence], frames: int, quiet: bool = False) -> dict[st
     found["ratio_to_floor"] = found["p50_ms"] / found["floor"]["total_ms"]
     with_learning = found["floor"]["total_ms"] + found["floor"]["learning_product_ms"]
     found["ratio_to_floor_with_learning"] = found["p50_ms"] / with_learning
+    footage = Footage(640, 480)
+    found["frame_allocations_mb"] = peak_of_a_frame(
+        TrackerConfig(), footage, middle(footage, TARGET_IN_IMAGES)
+    )
     found |= {"frames": frames, "load": timing.load}
     return found
 

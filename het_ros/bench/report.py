@@ -111,7 +111,8 @@ def _core(core: Bench) -> list[str]:
         f"{floor['product_ms']:.3f} ms; a frame takes {core['ratio_to_floor']:.1f} times that. "
         f"The product that learning by ridge regression needs takes "
         f"{floor['learning_product_ms']:.3f} ms more; a frame takes "
-        f"{core['ratio_to_floor_with_learning']:.1f} times the floor with it.",
+        f"{core['ratio_to_floor_with_learning']:.1f} times the floor with it. A frame asks for "
+        f"{core['frame_allocations_mb']:.1f} MB of memory at most at a time.",
     ]  # fmt: skip
 
 

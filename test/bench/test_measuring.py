@@ -1,0 +1,136 @@
+"""What is measured, on tiny inputs: that it is measured, never how long it took."""
+
+import os
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from het_ros.bench.allocations import peak_of_a_frame
+from het_ros.bench.core import core, sequences_for
+from het_ros.bench.floor import floor, sizes_of
+from het_ros.bench.footage import STEP, Footage
+from het_ros.bench.process import usage
+from het_ros.bench.scaling import Case, middle, scaling
+from het_ros.bench.stages import STAGES, stage_times, timed_stages
+from het_ros.tracking import target
+from het_ros.tracking.box import Box
+from het_ros.tracking.config import TrackerConfig
+from het_ros.tracking.tracker import HierarchicalEnsembleTracker
+
+SMALL = replace(TrackerConfig(), features=20, sub_patches=3)
+
+
+@pytest.fixture(scope="module")
+def footage():
+    return Footage(160, 120, 3)
+
+
+def test_footage_moves_forth_and_back(footage):
+    np.testing.assert_array_equal(footage[1][:, :-STEP], footage[0][:, STEP:])
+    np.testing.assert_array_equal(footage[3], footage[1])
+    assert footage[0].shape == (120, 160, 3)
+    assert footage[0].std() > 10
+
+
+def test_footage_of_one_frame_stands_still():
+    still = Footage(32, 24, 1)
+    np.testing.assert_array_equal(still[0], still[7])
+
+
+def test_the_tracker_follows_the_footage(footage):
+    """Else a bench on it would time a tracker that has lost its target."""
+    tracker = HierarchicalEnsembleTracker(TrackerConfig())
+    box = middle(footage, (24, 40))
+    tracker.init(footage[0], box)
+    for i in range(1, 12):
+        estimate = tracker.update(footage[i], 1 / 30)
+        shifted = Box(box.x - STEP * footage.at(i), *box.as_tuple()[1:])
+        assert estimate.box.iou(shifted) > 0.7
+
+
+def test_sizes_of_the_floor_are_those_of_the_tracker(footage, monkeypatch):
+    seen = {}
+    whole = target.Target._look
+
+    def look(self, image, centre):
+        frame = whole(self, image, centre)
+        seen["window"] = frame.window.pixels.shape[:2]
+        seen["cells"] = tuple(side - 1 for side in frame.integrals[0].shape)
+        seen["places"] = frame.features.shape[1] * frame.features.shape[2]
+        seen["channels"] = len(frame.integrals)
+        return frame
+
+    monkeypatch.setattr(target.Target, "_look", look)
+    config = TrackerConfig()
+    HierarchicalEnsembleTracker(config).init(footage[0], middle(footage, (40, 40)))
+    sizes = sizes_of(config)
+    assert seen == {name: getattr(sizes, name) for name in seen}
+
+
+def test_floor_is_the_sum_of_its_passes():
+    found = floor(sizes_of(SMALL), repetitions=3)
+    parts = [found[f"{name}_ms"] for name in ("window", "integrals", "product")]
+    assert found["total_ms"] == pytest.approx(sum(parts))
+    assert min(parts) > 0
+
+
+def test_there_is_no_floor_without_a_working_resolution():
+    with pytest.raises(ValueError, match="working_side"):
+        sizes_of(TrackerConfig.paper())
+
+
+@pytest.mark.parametrize(
+    ("config", "idle"), [(SMALL, set()), (TrackerConfig.paper(), {"colour", "scale"})]
+)
+def test_every_stage_that_a_configuration_has_takes_time(config, idle, footage):
+    found = stage_times(config, footage, middle(footage, (24, 40)), frames=2, warm_up=1)
+    assert {stage for stage in STAGES if found[stage] == 0} == idle
+    assert list(found) == [*STAGES, "rest"]
+    assert found["rest"] >= 0  # no stage is counted twice
+
+
+def test_timed_stages_leaves_everything_as_it_was():
+    before = target.cut_window, target.AdaptiveKalman.predict
+    with pytest.raises(KeyError), timed_stages():
+        raise KeyError
+    assert (target.cut_window, target.AdaptiveKalman.predict) == before
+
+
+def test_scaling_times_every_case(footage):
+    def curve(*sizes):
+        return [Case(f"{s}", s, SMALL, footage, (s, s)) for s in sizes]
+
+    found = scaling({"target": curve(16, 32), "image": curve(20, 30)}, frames=3, quiet=True)
+    assert [case["name"] for case in found["target"]["cases"]] == ["16", "32"]
+    assert all(case["tracking"] == 1 for case in found["target"]["cases"])
+    times = [case["p50_ms"] for case in found["target"]["cases"]]
+    assert found["target_factor"] == pytest.approx(max(times) / min(times))
+
+
+def test_core_without_a_folder_is_measured_on_rendered_frames(tmp_path):
+    frames = 4
+    sequences = sequences_for(None, tmp_path, frames)
+    assert len(sequences[0].frames) == frames + 1
+    found = core(sequences, frames, quiet=True)
+    assert found["p50_ms"] > 0
+    assert found["p99_over_p50"] >= 1
+    assert found["trackers"]["het"]["het_is_faster_by"] == 1
+    assert set(found["absent_peers"]).isdisjoint(found["trackers"])
+
+
+def test_usage_of_this_process():
+    before = usage(os.getpid())
+    np.linalg.svd(np.random.default_rng(0).random((300, 300)))
+    after = usage(os.getpid())
+    assert after.cpu >= before.cpu > 0
+    assert 0 < after.rss_mb <= after.peak_mb
+    assert after.threads >= 1
+
+
+def test_more_features_ask_for_more_memory(footage):
+    box = middle(footage, (24, 40))
+    few, many = (
+        peak_of_a_frame(replace(SMALL, features=m), footage, box, frames=1) for m in (20, 200)
+    )
+    assert 0 < few < many
