@@ -61,8 +61,11 @@ class Answers:
         send("pose", lambda: pose_from_estimate(estimate, header))
         send("velocity", lambda: twist_from_estimate(estimate, header))
         send("bearing", lambda: self._space.bearing(box, size, header))
-        if outcome.state is State.TRACKING:  # else the depth is of what hides the target
-            send("target_pose", lambda: self._space.pose(box, size, header, track))
+        # The depth is looked at whoever listens: it may tell that the box holds another thing.
+        # While COASTING it is that of what hides the target.
+        if outcome.state is State.TRACKING:
+            place = self._space.pose(box, size, header, track)
+            send("target_pose", lambda: place)
         if "detections" in self._outputs:
             send("detections", lambda: detections_message(estimate, track, header))
 

@@ -18,7 +18,9 @@ LEAST_VALID = 0.1  # share of the samples with a depth at all
 LEAST_SHARE = 0.15  # share of the valid samples that a surface needs to be the target
 GAP = (0.15, 0.04)  # m and share of the depth: a larger step starts another surface
 SLACK = 0.5  # m: so much the depth of a body varies from frame to frame
-FASTEST = 4.0  # m/s between camera and target
+FASTEST = 4.0  # m/s between camera and target, while nothing is looked at
+HIDDEN = 0.8  # m/s, while something else is seen in the target's place
+BLINK = 0.5  # s: over a longer time without a look, anything within FASTEST may have happened
 
 
 class DepthError(ValueError):
@@ -72,27 +74,38 @@ def depth_in(box: Box, size: tuple[int, int], metres: NDArray[np.float32]) -> fl
 
 
 class SteadyDepth:
-    """Refuses depths that the target cannot have reached since the last one."""
+    """Tells the target's depth from that of something else which the box has come to hold.
+
+    A body's depth changes little from frame to frame. After a step the old depth is what is
+    believed in, and it may only have drifted as far as somebody walks behind what hides them.
+    """
 
     def __init__(self) -> None:
         self._depth = 0.0
         self._stamp = 0
+        self._looked = 0
         self._track = -1
 
+    @property
+    def refused_for(self) -> float:
+        """How long the box has held something else, s; 0 while it holds the target."""
+        return (self._looked - self._stamp) / SECOND
+
     def checked(self, depth: float, stamp: int, track: int) -> float:
-        """The depth (m) at a stamp (ns) of a track, if it follows from the one before.
+        """The depth (m) at a stamp (ns) of a track, if it follows from those before.
 
         Raises:
-            DepthError: it lies further from the last than ``FASTEST`` and ``SLACK`` allow.
+            DepthError: it is another thing's.
         """
-        if track == self._track:
-            passed = max(stamp - self._stamp, 0) / SECOND
-            step = abs(depth - self._depth)
-            if step > SLACK + FASTEST * passed:
-                raise DepthError(
-                    f"the depth went from {self._depth:.1f} to {depth:.1f} m in {passed:.2f} s: "
-                    "that is another thing in the box"
-                )
+        passed = max(stamp - self._stamp, 0) / SECOND
+        watched = (stamp - self._looked) / SECOND < BLINK
+        allowed = SLACK + passed * (HIDDEN if watched else FASTEST)
+        self._looked = stamp
+        if track == self._track and abs(depth - self._depth) > allowed:
+            raise DepthError(
+                f"the depth went from {self._depth:.1f} to {depth:.1f} m in {passed:.2f} s: "
+                "that is another thing in the box"
+            )
         self._depth, self._stamp, self._track = depth, stamp, track
         return depth
 

@@ -84,6 +84,13 @@ class NodeConfig:
         low=0.0,
         high=10.0,
     )
+    depth_patience: float = parameter(
+        1.0,
+        "with depth, a track is LOST whose box has held another thing for this long; 0: never",
+        unit="s",
+        low=0.0,
+        high=60.0,
+    )
     debug_rate: float = parameter(
         10.0,
         "most debug images a second; they are drawn only for subscribers",

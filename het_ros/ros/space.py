@@ -70,6 +70,11 @@ class Space:
             self._hints.once(f"depth {type(error).__name__}", f"no ~/target_pose: {error}")
             return None
 
+    @property
+    def other_thing_for(self) -> float:
+        """How long the depth in the box has been another thing's than the target's, s."""
+        return self._steady.refused_for
+
     def _ray(self, box: Box, size: tuple[int, int], header: Header) -> NDArray[float64] | None:
         if self._info is None:
             return None

@@ -27,7 +27,7 @@ from het_ros.ros.hints import Hints
 from het_ros.ros.messages import BoxError, box_from_polygon, box_from_roi, stamp_ns
 from het_ros.ros.outputs import OUTPUTS, RELIABLE, Outputs, Tap
 from het_ros.ros.parameters import NodeConfig, declare, read
-from het_ros.ros.pursuit import Pursuit
+from het_ros.ros.pursuit import Outcome, Pursuit
 from het_ros.ros.quality import explain_silence, subscription_events
 from het_ros.ros.space import Space
 from het_ros.tracking.box import Box
@@ -256,7 +256,7 @@ class TrackerNode(LifecycleNode):
             self._pursuit.refuse(error)
             return
         if outcome is not None and outcome.published:
-            self._answers.publish(outcome)
+            self._answer(outcome)
         if self._pursuit.busy:
             self._work()
 
@@ -266,11 +266,21 @@ class TrackerNode(LifecycleNode):
         while self._pursuit.busy:
             outcome = self._pursuit.step(hurry=spun)
             if outcome is not None and outcome.published:
-                self._answers.publish(outcome)
+                self._answer(outcome)
             if spun:
                 if self._pursuit.busy:
                     self._wake.trigger()
                 return
+
+    def _answer(self, outcome: Outcome) -> None:
+        """Publish an outcome, and end a track whose box holds another thing by its depth."""
+        self._answers.publish(outcome)
+        patience = self._settings.depth_patience
+        strange = self.space.other_thing_for
+        if outcome.state is State.TRACKING and 0 < patience <= strange:
+            reason = f"the depth in the box has been another thing's for {strange:.1f} s"
+            self._pursuit.session.lose(f"{reason}: send a new box")
+            self.get_logger().warning(f"target lost: {reason}")
 
     def _stamp_of(self, header: Header) -> int:
         """The image's stamp, or the time of arrival where a driver leaves it at zero, ns."""

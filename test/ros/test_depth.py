@@ -5,6 +5,7 @@ from sensor_msgs.msg import Image
 from het_ros import Box
 from het_ros.ros.depth import DepthError, SteadyDepth, depth_in, metres_of, pose_at
 from het_ros.ros.images import ImageError
+from het_ros.ros.stamps import SECOND
 
 from .streams import header_at
 
@@ -113,7 +114,7 @@ def test_other_encodings_are_refused():
     [
         (1, 0.1, 2.4, True),  # a body's parts
         (1, 0.1, 1.5, True),
-        (1, 1.0, 5.5, True),  # somebody runs
+        (1, 1.0, 5.5, True),  # not looked at for a second: somebody ran
         (1, 0.1, 6.0, False),  # the wall behind
         (1, 0.1, 0.8, False),  # a post before
         (2, 0.1, 6.0, True),  # another target
@@ -129,6 +130,17 @@ def test_a_depth_that_jumps_is_of_something_else(track, stamp, depth, fits):
         with pytest.raises(DepthError, match="another thing"):
             steady.checked(depth, round(stamp * 1e9), track)
         assert steady.checked(2.1, round(stamp * 1e9), track) == 2.1
+
+
+def test_what_stands_before_the_target_is_told_until_it_is_away_again():
+    steady = SteadyDepth()
+    steady.checked(4.8, 0, 1)
+    for i in range(1, 20):
+        with pytest.raises(DepthError):
+            steady.checked(3.3, i * SECOND // 20, 1)
+        assert steady.refused_for == pytest.approx(i / 20)
+    assert steady.checked(4.9, SECOND, 1) == 4.9
+    assert steady.refused_for == 0
 
 
 def test_pose_lies_on_the_ray_at_that_depth():

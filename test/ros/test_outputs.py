@@ -80,6 +80,20 @@ def test_no_target_pose_without_depth_of_the_target(hand, made_footage, depth):
     assert "bearing" in outputs
 
 
+@pytest.mark.parametrize("patience, lost", [(0.3, True), (0.0, False)])
+def test_a_box_that_holds_another_thing_by_its_depth_is_lost(hand, made_footage, patience, lost):
+    hand.node.set_parameters([Parameter("depth_patience", value=patience)])
+    states = []
+    for i in range(1, 20):
+        hand.node.space.on_depth(depth_message(3.0 if i < 5 else 1.2, 1 + i * FRAME_TIME))
+        outputs = hand.image(made_footage[0][i], 1 + i * FRAME_TIME)
+        states.append(hand.state_of(outputs))
+        assert ("target_pose" in outputs) == (i < 5)
+    assert states[:12] == ["TRACKING"] * 12
+    assert (states[-1] == "LOST") == lost
+    assert ("another thing" in hand.node.reason) == lost
+
+
 def test_no_bearing_without_calibration(graph, made_footage):
     frames, box = made_footage
     hand = ByHand(graph)
