@@ -64,12 +64,11 @@ def _scaling(figure: Figure, scaling: Bench) -> None:
         sizes = [case["size"] for case in cases]
         times = [case["p50_ms"] for case in cases]
         axes.plot(sizes, times, "o-")
-        for case in cases:
-            at = (case["size"], case["p50_ms"])
-            axes.annotate(case["name"], at, (0, 6), textcoords="offset points", ha="center")
-        axes.set(xscale="log", yscale="log", ylim=(min(times) / 2, max(times) * 2))
-        axes.set(ylabel="p50, ms", title=f"{curve}: exponent {scaling[curve]['exponent']:+.2f}")
-        axes.grid(alpha=0.3, which="both")
+        axes.set(xscale="log", ylim=(0, 1.2 * max(times)), ylabel="p50, ms")
+        axes.set_xticks(sizes, [case["name"] for case in cases], rotation=20)
+        axes.minorticks_off()
+        axes.set_title(f"{curve}: exponent {scaling[curve]['exponent']:+.2f}")
+        axes.grid(alpha=0.3)
 
 
 def _node(axes: Axes, node: Bench) -> None:
