@@ -15,7 +15,8 @@ Plane = NDArray[np.float32]
 Corner = tuple[float, float]
 
 _BITS = 4  # a channel: 16 x 16 x 16 bins of colour, or 16 of gray
-_EMPTY = 1e-5  # share of a bin below which nothing is known of its colour
+_EMPTY = 1e-4  # share of a bin below which little is known of its colour
+_STRANGE = 0.2  # likelihood of a colour never seen: what comes in between is not the target
 _CORE = 0.8  # the target's colours are taken from this part of the box: corners are background
 _RING = 0.3  # width of the surroundings over half the target's circumference / 2
 
@@ -38,7 +39,7 @@ class ColourModel:
         """Probability (H, W) float32 that a pixel is the target's, by its colour alone."""
         if self._target is None:
             raise RuntimeError("the colour model knows no target yet: call learn first")
-        table = (self._target + _EMPTY) / (self._target + self._around + 2 * _EMPTY)
+        table = (self._target + _EMPTY) / (self._target + self._around + _EMPTY / _STRANGE)
         return np.asarray(table[colour_bins(pixels)], np.float32)
 
     def learn(self, pixels: NDArray[np.uint8], corner: Corner) -> None:

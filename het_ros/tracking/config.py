@@ -146,10 +146,13 @@ class TrackerConfig:
         True, "judge whether the target is there; without it every frame is followed and learnt"
     )
     hidden: float = parameter(
-        0.47,
+        0.52,
         "hidden where the product of the base ensembles' and the colours' shares falls below",
         low=0,
         high=1,
+    )
+    learn_colour: float = parameter(
+        0.8, "not learnt where the colours' likelihood falls below this share", low=0, high=1
     )
     doubt_template: float = parameter(
         0.75, "not learnt where the score falls below this share", low=0, high=1

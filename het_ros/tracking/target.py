@@ -354,6 +354,7 @@ def _base_ensembles(config: TrackerConfig, cells: tuple[float, float]) -> BaseEn
 def _limits(config: TrackerConfig) -> TrustLimits:
     return TrustLimits(
         hidden=config.hidden,
+        learn_colour=config.learn_colour,
         doubt_template=config.doubt_template,
         doubt_rival=config.doubt_rival,
         return_template=config.return_template,

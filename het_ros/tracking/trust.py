@@ -16,8 +16,8 @@ _RUNNING_RATE = 0.05  # of the means of the evidence, a frame
 _YOUNG = 10  # frames in which the model has seen too little to be ambiguous about a rival
 _COLOUR_POWER = 1.0
 _NEVER_BELOW = 0.2  # relative template score that nothing can excuse
-# score = logistic(bias + slopes * evidence), fitted to the frames of many real tracks.
-_BIAS, _BY_TEMPLATE, _BY_COLOUR, _BY_RIVAL = -4.0, 6.0, 2.0, -2.0
+# Logistic regression of "IoU over 0.5" on the evidence, over the frames of many real tracks.
+_BIAS, _BY_TEMPLATE, _BY_COLOUR, _BY_RIVAL = -5.0, 6.9, 2.5, -2.5
 
 
 class Verdict(Enum):
@@ -48,6 +48,7 @@ class TrustLimits:
     """Thresholds of the verdict; see TrackerConfig for their meaning."""
 
     hidden: float
+    learn_colour: float
     doubt_template: float
     doubt_rival: float
     return_template: float
@@ -84,8 +85,9 @@ class Trust:
             self._colour = evidence.colour
         template = evidence.template / self._template
         colour = evidence.colour / max(self._colour, 1e-6)
-        verdict = self._verdict(template, colour, evidence.rival / max(evidence.template, 1e-6))
-        self.score = self._probability(template, colour, evidence)
+        rival = evidence.rival / max(evidence.template, 1e-6)
+        verdict = self._verdict(template, colour, rival)
+        self.score = probability(evidence.template, colour, rival)
         if verdict is Verdict.HIDDEN:
             self._hidden_for += dt
             self.hidden_frames += 1
@@ -110,15 +112,23 @@ class Trust:
         if template < _NEVER_BELOW or (old and template * colour**_COLOUR_POWER < limits.hidden):
             return Verdict.HIDDEN
         ambiguous = template < limits.doubt_template and rival > limits.doubt_rival
-        return Verdict.DOUBTED if ambiguous and old else Verdict.SEEN
+        # A post that comes in from the side takes the colours away first.
+        covered = colour < limits.learn_colour and template < 1
+        return Verdict.DOUBTED if old and (ambiguous or covered) else Verdict.SEEN
 
-    @staticmethod
-    def _probability(template: float, colour: float, evidence: Evidence) -> float:
-        """Probability that the box is right (IoU over 0.5)."""
-        logit = (
-            _BIAS
-            + _BY_TEMPLATE * min(template, 1.2)
-            + _BY_COLOUR * min(colour, 1.2)
-            + _BY_RIVAL * evidence.rival
-        )
-        return 1 / (1 + math.exp(-logit))
+
+def probability(template: float, colour: float, rival: float) -> float:
+    """Probability that a box is right (IoU over 0.5), 0..1.
+
+    Args:
+        template: mean score of the base ensembles there.
+        colour: the colours' likelihood relative to its mean.
+        rival: best score elsewhere over the one there.
+    """
+    logit = (
+        _BIAS
+        + _BY_TEMPLATE * template
+        + _BY_COLOUR * min(colour, 1.2)
+        + _BY_RIVAL * min(max(rival, 0.0), 1.5)
+    )
+    return 1 / (1 + math.exp(-logit))
