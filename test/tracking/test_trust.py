@@ -1,13 +1,16 @@
 import math
+from dataclasses import fields
 
 import pytest
 
-from het_ros import State
+from het_ros import State, TrackerConfig
 from het_ros.tracking.trust import Evidence, Trust, TrustLimits, Verdict
 
-LIMITS = TrustLimits(
+# Those named are what the tables below were written for, the others are the tracker's own.
+CONFIG = TrackerConfig(
     hidden=0.5, doubt_template=0.75, doubt_rival=0.8, return_template=0.6, lost_after=2.0
 )
+LIMITS = TrustLimits(**{f.name: getattr(CONFIG, f.name) for f in fields(TrustLimits)})
 GOOD = Evidence(template=1.0, colour=0.8, rival=0.2)
 GONE = Evidence(template=0.1, colour=0.1, rival=0.1)
 
