@@ -270,7 +270,7 @@ WITHOUT_COLOUR = pytest.mark.xfail(
         {"channels": ("gray",)},
         {"cell": 1},
         {"sub_patches": 1},
-        {"features": 20},
+        {"features": 80},
         {"working_side": 0.0},
         {"trust": False, "combination": "weighted"},
         {"trust": False, "base_ensemble": "naive_bayes"},
