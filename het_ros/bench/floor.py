@@ -58,10 +58,17 @@ def sizes_of(config: TrackerConfig) -> Sizes:
     )
 
 
-def floor(sizes: Sizes, repetitions: int = 300) -> dict[str, float]:
-    """Median time of each unavoidable pass, ms.
+def floor(sizes: Sizes, frame: Callable[[], object], repetitions: int = 150) -> dict[str, float]:
+    """Median time of each unavoidable pass and of a whole frame, ms, all in turns.
+
+    Args:
+        sizes: of the passes.
+        frame: does one frame of a tracker with these sizes. Timed in turns with the passes, it
+            meets the same machine and leaves them as cold a cache as they have in a frame.
+        repetitions: of each.
 
     Returns:
+        ``frame_ms``;
         ``window_ms``, ``integrals_ms``, ``product_ms`` and their sum ``total_ms``; beside it
         ``learning_product_ms``, the product (m, places) (places, m) of learning by ridge
         regression, which is not part of the sum.
@@ -79,6 +86,7 @@ def floor(sizes: Sizes, repetitions: int = 300) -> dict[str, float]:
         "integrals": lambda: [cv2.integral(plane) for plane in planes],
         "product": lambda: np.matmul(votes, maps, out=scores),
         "learning_product": lambda: np.matmul(maps, maps.T, out=gram),
+        "frame": frame,
     }
     times = {name: np.empty(repetitions) for name in passes}
     for i in range(repetitions):

@@ -108,7 +108,8 @@ def _core(core: Bench) -> list[str]:
         + (f" Not in this OpenCV: {absent}." if absent else ""),
         f"Floor: window {floor['window_ms']:.3f} ms, integral images "
         f"{floor['integrals_ms']:.3f} ms, product of votes and features "
-        f"{floor['product_ms']:.3f} ms; a frame takes {core['ratio_to_floor']:.1f} times that. "
+        f"{floor['product_ms']:.3f} ms; a frame, timed in turns with them, takes "
+        f"{floor['frame_ms']:.2f} ms, {core['ratio_to_floor']:.1f} times that. "
         f"The product that learning by ridge regression needs takes "
         f"{floor['learning_product_ms']:.3f} ms more; a frame takes "
         f"{core['ratio_to_floor_with_learning']:.1f} times the floor with it. A frame asks for "

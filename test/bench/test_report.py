@@ -21,7 +21,8 @@ def a_bench():
     curve = {"cases": [{"name": "a", "size": 1, "p50_ms": 2.0},
                        {"name": "b", "size": 2, "p50_ms": 2.0}], "exponent": 0.0}  # fmt: skip
     floor = dict.fromkeys(
-        ("window_ms", "integrals_ms", "product_ms", "learning_product_ms", "total_ms"), 0.1
+        ("window_ms", "integrals_ms", "product_ms", "learning_product_ms", "total_ms", "frame_ms"),
+        0.1,
     )
     return {
         "date": "2026-01-02",
