@@ -57,7 +57,8 @@ class ColourModel:
         margin = (1 - _CORE) / 2
         target = _histogram(_cut(bins, corner, self._size, (-margin * width, -margin * height)))
         wide = _histogram(_cut(bins, corner, self._size, (ring, ring)))
-        around = wide - _histogram(_cut(bins, corner, self._size, (2, 2)))
+        # Of a target of a few px the ring may be narrower than the px left out around it.
+        around = np.maximum(wide - _histogram(_cut(bins, corner, self._size, (2, 2))), 0)
         target /= target.sum()
         around /= max(float(around.sum()), 1.0)
         if self._target is None:

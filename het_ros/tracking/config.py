@@ -146,7 +146,7 @@ class TrackerConfig:
         True, "judge whether the target is there; without it every frame is followed and learnt"
     )
     hidden: float = parameter(
-        0.52,
+        0.47,
         "hidden where the product of the base ensembles' and the colours' shares falls below",
         low=0,
         high=1,
@@ -160,8 +160,11 @@ class TrackerConfig:
     doubt_rival: float = parameter(
         0.8, "and another place scores above this share of the best", low=0, high=1
     )
+    twin: float = parameter(
+        0.9, "not learnt where another place scores above this share of the best", low=0, high=10
+    )
     return_template: float = parameter(
-        0.6, "found again only where the score is above this share", low=0, high=2
+        0.8, "found again only where the score is above this share", low=0, high=2
     )
     lost_after: float = parameter(
         2.0, "a target that stays hidden is coasted this long, then LOST", unit="s", low=0, high=60

@@ -114,18 +114,17 @@ def grid_means(integrals: Integrals, centre: Floats, sides: Floats, grid: int) -
     """
     stack = np.stack(integrals).astype(np.float64)
     channels, height, width = stack.shape
+    sizes = len(sides)
     lines = np.linspace(-0.5, 0.5, grid + 1)
     xs = np.clip(centre[0] + sides[:, :1] * lines, 0, width - 1)  # (S, g + 1)
     ys = np.clip(centre[1] + sides[:, 1:] * lines, 0, height - 1)
-    sizes = len(sides)
-    down = _interpolation(ys.ravel(), height) @ stack.transpose(1, 0, 2).reshape(height, -1)
-    bands = np.diff(down.reshape(sizes, grid + 1, channels, width), axis=1)
-    across = _interpolation(xs.ravel(), width).reshape(sizes, grid + 1, width)
-    sums = np.diff(
-        bands.reshape(sizes, grid * channels, width) @ across.transpose(0, 2, 1), axis=2
-    ).reshape(sizes, grid, channels, grid)
+    # Differences of the narrow interpolation matrices, not of what they make of the stack.
+    down = np.diff(_interpolation(ys.ravel(), height).reshape(sizes, grid + 1, height), axis=1)
+    across = np.diff(_interpolation(xs.ravel(), width).reshape(sizes, grid + 1, width), axis=1)
+    rows = down.reshape(-1, height) @ stack.transpose(1, 0, 2).reshape(height, -1)
+    sums = rows.reshape(sizes, grid * channels, width) @ across.transpose(0, 2, 1)
     areas = np.diff(ys)[:, :, None] * np.diff(xs)[:, None, :] + 1e-3  # (S, g, g)
-    means = sums / areas[:, :, None, :]
+    means = sums.reshape(sizes, grid, channels, grid) / areas[:, :, None, :]
     return np.asarray(means.transpose(2, 1, 3, 0).reshape(channels * grid * grid, sizes))
 
 

@@ -355,6 +355,7 @@ def _limits(config: TrackerConfig) -> TrustLimits:
     return TrustLimits(
         hidden=config.hidden,
         learn_colour=config.learn_colour,
+        twin=config.twin,
         doubt_template=config.doubt_template,
         doubt_rival=config.doubt_rival,
         return_template=config.return_template,

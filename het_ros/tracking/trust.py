@@ -13,6 +13,11 @@ from enum import Enum
 from het_ros.tracking.estimate import State
 
 _RUNNING_RATE = 0.05  # of the means of the evidence, a frame
+_LONGEST_DOUBT = 0.5  # s; who is doubted for longer is not followed any more
+_JUST_HIDDEN = 0.2  # s
+_EASY_RETURN = 0.8  # share of return_template that is enough at once or without a rival
+_CLEAR_RIVAL = 0.5
+_ANY_RIVAL = 10.0  # shares beyond this say no more
 _YOUNG = 10  # frames in which the model has seen too little to be ambiguous about a rival
 _COLOUR_POWER = 1.0
 _NEVER_BELOW = 0.2  # relative template score that nothing can excuse
@@ -49,6 +54,7 @@ class TrustLimits:
 
     hidden: float
     learn_colour: float
+    twin: float
     doubt_template: float
     doubt_rival: float
     return_template: float
@@ -68,6 +74,7 @@ class Trust:
         self._colour: float | None = None
         self._frames = 0
         self._hidden_for = 0.0
+        self._doubted_for = 0.0
         self.hidden_frames = 0
         self.state = State.TRACKING
         self.score = 1.0
@@ -84,10 +91,16 @@ class Trust:
         if self._colour is None:
             self._colour = evidence.colour
         template = evidence.template / self._template
-        colour = evidence.colour / max(self._colour, 1e-6)
-        rival = evidence.rival / max(evidence.template, 1e-6)
+        # Without a colour model the colours neither speak for a place nor against it.
+        colour = evidence.colour / self._colour if self._colour else 1.0
+        rival = min(max(evidence.rival, 0.0) / max(evidence.template, 1e-6), _ANY_RIVAL)
         verdict = self._verdict(template, colour, rival)
+        self._doubted_for = self._doubted_for + dt if verdict is Verdict.DOUBTED else 0.0
+        if self._doubted_for > _LONGEST_DOUBT:
+            verdict = Verdict.HIDDEN
         self.score = probability(evidence.template, colour, rival)
+        if rival > self._limits.twin:
+            self.score = min(self.score, 0.5)
         if verdict is Verdict.HIDDEN:
             self._hidden_for += dt
             self.hidden_frames += 1
@@ -106,15 +119,21 @@ class Trust:
     def _verdict(self, template: float, colour: float, rival: float) -> Verdict:
         """The rules; template and colour relative to their means, rival to the peak."""
         limits = self._limits
-        if self.state is not State.TRACKING and template < limits.return_template:
-            return Verdict.HIDDEN
+        if self.state is not State.TRACKING:
+            # One bad frame is more often the target's than a post's; and where nothing rivals
+            # the place it is clear enough.
+            easy = self._hidden_for < _JUST_HIDDEN or rival < _CLEAR_RIVAL
+            if template < limits.return_template * (_EASY_RETURN if easy else 1):
+                return Verdict.HIDDEN
         old = self._frames > _YOUNG
         if template < _NEVER_BELOW or (old and template * colour**_COLOUR_POWER < limits.hidden):
             return Verdict.HIDDEN
         ambiguous = template < limits.doubt_template and rival > limits.doubt_rival
         # A post that comes in from the side takes the colours away first.
         covered = colour < limits.learn_colour and template < 1
-        return Verdict.DOUBTED if old and (ambiguous or covered) else Verdict.SEEN
+        # Somebody who looks the same is next to the target: it may be either.
+        twin = rival > limits.twin
+        return Verdict.DOUBTED if old and (ambiguous or covered or twin) else Verdict.SEEN
 
 
 def probability(template: float, colour: float, rival: float) -> float:

@@ -96,7 +96,8 @@ def _resample(
         )
         coarse_x, coarse_y = source.shape[1] / size[0], source.shape[0] / size[1]
         # From the middle of each step on, or everything would move by half a step.
-        thinned = np.ascontiguousarray(source[step // 2 :: step, step // 2 :: step])
+        middle = [min(step // 2, side - 1) for side in source.shape[:2]]
+        thinned = np.ascontiguousarray(source[middle[0] :: step, middle[1] :: step])
         source = np.asarray(cv2.resize(thinned, size, interpolation=cv2.INTER_AREA), np.uint8)
     to_source = np.array(
         [
