@@ -148,13 +148,6 @@ def test_boxes_of_all_sizes_and_over_the_border(noise, box, gray):
         check_promises(tracker.update(np.roll(image, shift, axis=1), DT))
 
 
-# Beyond a large target's reach nothing of the image is left in the search window.
-SHRUNK = pytest.mark.xfail(
-    reason="a large target's window beyond the image's border has nothing to average",
-    strict=False,
-)
-
-
 @pytest.mark.parametrize(
     "shape",
     [
@@ -185,7 +178,6 @@ def test_images_that_change_their_size(noise, box, shape):
         check_promises(tracker.update(noise, DT))
 
 
-@SHRUNK
 @pytest.mark.parametrize("shape", [(1, 160, 3), (120, 1, 3), (1, 1)], ids=str)
 def test_a_large_target_on_an_image_of_a_few_px(noise, shape):
     large = np.repeat(np.repeat(noise, 6, axis=0), 6, axis=1)
@@ -255,18 +247,12 @@ def test_a_second_box_starts_afresh(noise):
     assert (a.box, a.score, a.patches) == (b.box, b.score, b.patches)
 
 
-WITHOUT_COLOUR = pytest.mark.xfail(
-    reason="without the vote of the colours every frame after the tenth is judged hidden",
-    strict=False,
-)
-
-
 @pytest.mark.parametrize(
     "part",
     [
         {"scales": 1},
         {"trust": False},
-        pytest.param({"colour_weight": 0.0}, marks=WITHOUT_COLOUR),
+        {"colour_weight": 0.0},
         {"channels": ("gray",)},
         {"cell": 1},
         {"sub_patches": 1},

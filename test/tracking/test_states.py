@@ -82,8 +82,6 @@ def cases(*pairs, known=()):
 HIDES = (("hidden_500ms", 0), ("hidden_1s", 0), ("hidden_2s", 0), ("hidden_2s", 2))
 AWAY = (*HIDES, ("leaves_and_returns", 0), ("lookalike_at_column", 1))
 ALIKE = (("lookalike_at_column", 1), ("lookalike_crosses", 0), ("lookalike_crosses", 1))
-# In each of these one frame of the search takes something else for the target, and learns it.
-COLUMN = "the column is taken for the target, in {} of the hidden frames with a score over 0.5"
 
 
 def test_who_stays_in_sight_is_tracked_all_the_time():
@@ -97,11 +95,6 @@ def test_who_stays_in_sight_is_tracked_all_the_time():
     ("story", "seed"),
     cases(
         *AWAY,
-        known={
-            ("hidden_500ms", 0): COLUMN.format("all"),
-            ("hidden_2s", 0): COLUMN.format("72 %"),
-            ("lookalike_at_column", 1): COLUMN.format("all"),
-        },
     ),
 )
 def test_who_is_hidden_is_not_followed_with_confidence(story, seed):
@@ -109,19 +102,14 @@ def test_who_is_hidden_is_not_followed_with_confidence(story, seed):
     assert np.mean([m.confident for m in hidden]) < 0.5
 
 
-NEVER_BACK = {("hidden_2s", 0): "stays on the column after 22 hidden frames: overlap 0 at the end"}
-
-
-@pytest.mark.parametrize(("story", "seed"), cases(*AWAY, known=NEVER_BACK))
+@pytest.mark.parametrize(("story", "seed"), cases(*AWAY))
 def test_who_comes_out_again_is_followed_again(story, seed):
     after = followed(story, seed).afterwards()
     assert np.mean([m.overlap > 0.3 for m in after]) > 0.7
     assert after[-1].estimate.state is State.TRACKING
 
 
-@pytest.mark.parametrize(
-    ("story", "seed"), cases(*AWAY, known={("hidden_2s", 0): "F is 0.85: stays on the column"})
-)
+@pytest.mark.parametrize(("story", "seed"), cases(*AWAY))
 def test_the_state_says_whether_the_target_is_in_sight(story, seed):
     assert f_of_visible(followed(story, seed)[1:]) > 0.9
 
