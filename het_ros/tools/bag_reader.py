@@ -1,15 +1,20 @@
-"""Read rosbag2 bags: CDR bytes to play, frames and ground truth to look at."""
+"""Read rosbag2 bags: CDR bytes to play, frames and ground truth to look at.
+
+A bag may come from anybody. Only files inside its folder are read, nothing in it is executed, and
+whatever is wrong with it is a :class:`BagError`.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from types import TracebackType
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
-from rosbags.highlevel import AnyReader, AnyReaderError
+from rosbags.interfaces import Connection
+from rosbags.rosbag2 import Reader
 
 from het_ros.ros.images import decode, to_array
 from het_ros.ros.status import status_values
@@ -23,8 +28,12 @@ from het_ros.tools.bag_messages import (
     box_of,
     stamp_of,
 )
+from het_ros.tools.bag_types import is_jazzys
 from het_ros.tools.bag_writer import TYPESTORE
 from het_ros.tracking.box import Box
+
+Value = TypeVar("Value")
+MOST_METADATA = 16_000_000  # bytes; a metadata.yaml is a few thousand, and YAML is slow to read
 
 
 class BagError(ValueError):
@@ -60,19 +69,24 @@ class BagReader:
         image_topic: topic of the images; empty when there are none.
 
     Raises:
-        BagError: there is no bag at ``path``, it is broken, or has several image topics.
+        BagError: there is no bag at ``path``, it is broken, leads out of its folder, or has
+            several image topics.
     """
 
     def __init__(self, path: Path | str, image_topic: str | None = None) -> None:
         self.path = Path(path)
         if not (self.path / "metadata.yaml").is_file():
             raise BagError(f"{path} is no rosbag2: there is no metadata.yaml in that folder")
+        _check_folder(self.path)
         try:
-            self._reader = AnyReader([self.path], default_typestore=TYPESTORE)
+            self._reader = Reader(self.path)
             self._reader.open()
-        except (AnyReaderError, OSError) as error:
-            raise BagError(f"{path} cannot be read as a bag: {error}") from None
+        except Exception as error:  # a stranger's bytes: rosbags raises some twenty kinds
+            raise BagError(f"{path} cannot be read as a bag: {error!r}") from error
         connections = self._reader.connections
+        if not all(_is_sound(connection) for connection in connections):
+            self._reader.close()
+            raise BagError(f"{path} cannot be read as a bag: its list of topics is broken")
         self.topics = {connection.topic: connection.msgtype for connection in connections}
         self.counts = {connection.topic: connection.msgcount for connection in connections}
         self.image_topic = self._find_images(image_topic)
@@ -110,22 +124,44 @@ class BagReader:
         """Whether the images are CompressedImage."""
         return self.topics.get(self.image_topic) == COMPRESSED_IMAGE
 
-    def type_hash(self, topic: str) -> str:
-        """REP-2011 hash of the topic's type as the bag defines it."""
-        return self._reader.typestore.hash_rihs01(self.topics[topic])
+    def has_jazzys(self, topic: str) -> bool:
+        """Whether the bag defines the topic's type as ROS 2 Jazzy does."""
+        return all(is_jazzys(c) for c in self._reader.connections if c.topic == topic)
 
     def recorded(self, *topics: str) -> Iterator[Recorded]:
-        """Messages of some topics (all if none is named) in the order of recording."""
+        """Messages of some topics (all if none is named) in the order of recording.
+
+        Raises:
+            BagError: the file is cut off or broken here; what came before it is right.
+        """
         chosen = [c for c in self._reader.connections if not topics or c.topic in topics]
-        if not chosen:
-            return
-        for connection, time, cdr in self._reader.messages(connections=chosen):
+        messages = iter(self._reader.messages(connections=chosen) if chosen else ())
+        while True:
+            try:
+                connection, time, cdr = next(messages)
+            except StopIteration:
+                return
+            except Exception as error:
+                raise BagError(f"{self.path} is broken: {error!r}") from error
             yield Recorded(connection.topic, connection.msgtype, time, bytes(cdr))
 
     def messages(self, *topics: str) -> Iterator[tuple[str, Any]]:
-        """Topic and decoded message, in the order of recording."""
+        """Topic and decoded message, in the order of recording.
+
+        Raises:
+            BagError: the file or a message is broken, or of a type that is not Jazzy's.
+        """
+        for topic in topics or self.topics:
+            if topic in self.topics and not self.has_jazzys(topic):
+                raise BagError(
+                    f"{self.path}: {topic} has a {self.topics[topic]} that is not ROS 2 Jazzy's"
+                )
         for recorded in self.recorded(*topics):
-            yield recorded.topic, self._reader.deserialize(recorded.cdr, recorded.kind)
+            try:
+                message = TYPESTORE.deserialize_cdr(recorded.cdr, recorded.kind)
+            except Exception as error:
+                raise BagError(f"{self.path}: a broken message on {recorded.topic}") from error
+            yield recorded.topic, message
 
     def images(self) -> Iterator[tuple[int, NDArray[np.uint8]]]:
         """Header stamp (ns) and pixels, (H, W, 3) BGR or (H, W) gray uint8, of each image."""
@@ -141,14 +177,41 @@ class BagReader:
         """Ground-truth boxes by header stamp; empty if the bag has none."""
         if self.topics.get(TRUTH_BOX_TOPIC) != POLYGON:
             return {}
-        return {stamp_of(m): box_of(m) for _, m in self.messages(TRUTH_BOX_TOPIC)}
+        return {stamp_of(m): self._read(box_of, m) for _, m in self.messages(TRUTH_BOX_TOPIC)}
 
     def visibility(self) -> dict[int, float]:
         """Part of the target that can be seen, 0..1, by header stamp; empty if not recorded."""
         if self.topics.get(VISIBILITY_TOPIC) != DIAGNOSTICS:
             return {}
-        messages = self.messages(VISIBILITY_TOPIC)
-        return {stamp_of(m): float(status_values(m)["visible"]) for _, m in messages}
+        return {
+            stamp_of(m): self._read(_visible_part, m) for _, m in self.messages(VISIBILITY_TOPIC)
+        }
+
+    def _read(self, reading: Callable[[Any], Value], message: Any) -> Value:
+        try:
+            return reading(message)
+        except (ValueError, LookupError) as error:
+            raise BagError(f"{self.path}: a ground truth that is none: {error}") from error
+
+
+def _check_folder(path: Path) -> None:
+    """Raise BagError for what is too large to be a bag's metadata, or leads out of its folder."""
+    if (path / "metadata.yaml").stat().st_size > MOST_METADATA:
+        raise BagError(f"{path} is no bag: its metadata.yaml is over {MOST_METADATA:,} bytes")
+    folder = path.resolve()
+    for file in path.iterdir():
+        if not file.resolve().is_relative_to(folder):
+            raise BagError(f"{file} leads out of the bag's folder: put the file itself there")
+
+
+def _is_sound(connection: Connection) -> bool:
+    """Whether name, type and number of messages, as metadata.yaml gives them, are such."""
+    name, kind, count = connection.topic, connection.msgtype, connection.msgcount
+    return isinstance(name, str) and isinstance(kind, str) and type(count) is int and count >= 0
+
+
+def _visible_part(message: Any) -> float:
+    return float(status_values(message)["visible"])
 
 
 def header_stamp(cdr: bytes) -> int:

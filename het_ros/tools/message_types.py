@@ -6,7 +6,6 @@ from importlib import import_module
 from typing import Any
 
 from het_ros.tools.bag_reader import BagError, BagReader
-from het_ros.tools.bag_writer import TYPESTORE
 
 
 def message_class(kind: str) -> Any:
@@ -32,10 +31,10 @@ def check_types(bag: BagReader, topics: list[str]) -> None:
     """
     for topic in topics:
         kind = bag.topics[topic]
-        message_class(kind)
-        known = kind in TYPESTORE.fielddefs
-        if not known or TYPESTORE.hash_rihs01(kind) != bag.type_hash(topic):
+        # First the check: a package that a bag names is not imported unless it is Jazzy's own.
+        if not bag.has_jazzys(topic):
             raise BagError(
                 f"{bag.path}: {topic} has a {kind} that is not ROS 2 Jazzy's: "
                 "convert the bag, or play it with the ROS release that recorded it"
             )
+        message_class(kind)
