@@ -11,9 +11,9 @@ from het_ros.ros.detections import detections_message
 from het_ros.ros.diagnostics import Health
 from het_ros.ros.images import ImageError
 from het_ros.ros.messages import polygon_from_box, pose_from_estimate, twist_from_estimate
+from het_ros.ros.outcome import Outcome
 from het_ros.ros.outputs import Outputs
 from het_ros.ros.parameters import NodeConfig
-from het_ros.ros.pursuit import Outcome
 from het_ros.ros.space import Space
 from het_ros.ros.stamps import SECOND
 from het_ros.ros.status import Status, status_message

@@ -2,58 +2,39 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Callable
 from copy import copy
-from functools import wraps
 from typing import Any
 
 from diagnostic_msgs.msg import DiagnosticArray
 from geometry_msgs.msg import PolygonStamped
 from rcl_interfaces.msg import SetParametersResult
 from rclpy.clock import Clock, ClockType
-from rclpy.lifecycle import LifecycleNode, LifecycleState, TransitionCallbackReturn
 from rclpy.parameter import Parameter
-from rclpy.qos import QoSProfile, ReliabilityPolicy
+from rclpy.qos import QoSProfile
 from rclpy.qos_overriding_options import QoSOverridingOptions
-from sensor_msgs.msg import CameraInfo, CompressedImage, Image, RegionOfInterest
-from std_msgs.msg import Header
+from sensor_msgs.msg import CameraInfo, Image, RegionOfInterest
 from std_srvs.srv import SetBool, Trigger
 
 from het_ros.ros.answers import Answers
 from het_ros.ros.detections import vision_msgs
-from het_ros.ros.frames import Conversion, Frame, ImageMessage
+from het_ros.ros.frames import Frame, ImageMessage
 from het_ros.ros.hints import Hints
+from het_ros.ros.image_stream import NEWEST_ONLY, ImageStream
+from het_ros.ros.managed_node import ManagedNode
 from het_ros.ros.messages import BoxError, box_from_polygon, box_from_roi, stamp_ns
+from het_ros.ros.outcome import Outcome
 from het_ros.ros.outputs import OUTPUTS, RELIABLE, Outputs, Tap
 from het_ros.ros.parameters import NodeConfig, declare, read
-from het_ros.ros.pursuit import Outcome, Pursuit
-from het_ros.ros.quality import explain_silence, subscription_events
+from het_ros.ros.pursuit import Pursuit
+from het_ros.ros.quality import subscription_events
 from het_ros.ros.space import Space
 from het_ros.tracking.box import Box
 from het_ros.tracking.config import TrackerConfig
 from het_ros.tracking.estimate import State
 
-# Depth 1: with a deeper queue a busy node works on old images, and latency grows by the depth.
-NEWEST_ONLY = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
 
-
-def _told(transition: Callable[..., TransitionCallbackReturn]) -> Callable[..., Any]:
-    """A transition that tells why it failed; rclpy swallows what is raised in one."""
-
-    @wraps(transition)
-    def telling(self: TrackerNode, state: LifecycleState) -> TransitionCallbackReturn:
-        try:
-            return transition(self, state)
-        except Exception as error:
-            self._failure = error
-            self.get_logger().fatal(f"{transition.__name__} failed: {error!r}")
-            return TransitionCallbackReturn.FAILURE
-
-    return telling
-
-
-class TrackerNode(LifecycleNode):
+class TrackerNode(ManagedNode):
     """Follows one target; what is done with frames and boxes is in :class:`Pursuit`.
 
     With ``autostart`` (the default) the node is active when its constructor returns. Without an
@@ -64,14 +45,15 @@ class TrackerNode(LifecycleNode):
 
     Attributes:
         space: takes camera_info and depth, by hand as well.
+        images: where its images come from.
 
     Args:
         name: node name, first part of the output topics.
         tap: called as ``tap(topic, message)`` for everything published, subscribers or not (but
             "debug_image", which is drawn for subscribers only); topic is a key of ``OUTPUTS``.
         config: the tracker's defaults, under the parameters that are set.
-        source: another node of the same process whose images this one looks at as well; each is
-            taken and converted once for both, and none come while ``source`` is not active.
+        source: another node of the same process whose images this one looks at as well, whatever
+            state that node is in; each is taken and converted once for both.
         **options: of rclpy's Node (context, namespace, parameter_overrides, cli_args...).
     """
 
@@ -86,26 +68,21 @@ class TrackerNode(LifecycleNode):
     ) -> None:
         super().__init__(name, **options)
         self._tap = tap
-        self._source = source
-        self._sharing: list[TrackerNode] = []
         self._hints = Hints(self.get_logger())
         declare(self, NodeConfig())
         declare(self, config or TrackerConfig())
         self._settings = read(self, NodeConfig)
         self._pursuit = self._new_pursuit()
         self.space = Space(self._settings, self._hints)
+        self.images = self._new_images() if source is None else source.images
         self._active = False
         self._enabled = True
-        self._inputs: list[tuple[Callable[[Any], Any], Any]] = []
         self._outputs = Outputs(self, {}, None)
         self._answers = self._new_answers()
         self.add_on_set_parameters_callback(self._check_parameters)
         self.add_post_set_parameters_callback(self._apply_parameters)
-        self._failure: Exception | None = None
         if self._settings.autostart:
-            for transition in (self.trigger_configure, self.trigger_activate):
-                if transition() is not TransitionCallbackReturn.SUCCESS:
-                    raise RuntimeError(f"the node did not start: {self._failure!r}")
+            self.start()
 
     @property
     def state(self) -> State:
@@ -119,16 +96,12 @@ class TrackerNode(LifecycleNode):
 
     # Lifecycle ------------------------------------------------------------------------------
 
-    @_told
-    def on_configure(self, state: LifecycleState) -> TransitionCallbackReturn:
+    def configure(self) -> None:
         """Make outputs and services, on a stream that nothing is known of."""
         self._pursuit = self._new_pursuit()
-        kinds = dict(OUTPUTS)
-        if vision_msgs is None:
-            self.get_logger().debug("vision_msgs is not installed: there is no ~/detections")
-        else:
-            kinds["detections"] = vision_msgs.Detection2DArray
-        self._outputs = Outputs(self, kinds, self._tap)
+        self.configured.callback(lambda: self._pursuit.drop("waiting for a box"))
+        self._outputs = Outputs(self, self._kinds(), self._tap)
+        self.configured.callback(self._outputs.destroy)
         self._answers = self._new_answers()
         self._diagnostics = self.create_publisher(
             DiagnosticArray,
@@ -136,80 +109,49 @@ class TrackerNode(LifecycleNode):
             copy(RELIABLE),
             qos_overriding_options=QoSOverridingOptions.with_default_policies(),
         )
-        self._offered = [
-            self.create_service(Trigger, "~/reset", self._on_reset),
-            self.create_service(SetBool, "~/enable", self._on_enable),
-        ]
+        self.configured.callback(self.destroy_publisher, self._diagnostics)
+        for kind, name, serve in (
+            (Trigger, "~/reset", self._on_reset),
+            (SetBool, "~/enable", self._on_enable),
+        ):
+            service = self.create_service(kind, name, serve)
+            self.configured.callback(self.destroy_service, service)
         steady = Clock(clock_type=ClockType.STEADY_TIME)  # runs under use_sim_time as well
-        period = self._settings.diagnostics_period
-        self._reporter = self.create_timer(period, self._report, clock=steady)
+        reporter = self.create_timer(self._settings.diagnostics_period, self._report, clock=steady)
+        self.configured.callback(self.destroy_timer, reporter)
         self._wake = self.create_guard_condition(self._work)
-        return super().on_configure(state)
+        self.configured.callback(self.destroy_guard_condition, self._wake)
 
-    @_told
-    def on_activate(self, state: LifecycleState) -> TransitionCallbackReturn:
+    def activate(self) -> None:
         """Subscribe to the inputs."""
-        if self._source is None:
-            self._take_images()
-        else:
-            self._source.share_with(self)
+        self.images.join(self.on_frame)
+        self.activated.callback(self.images.leave, self.on_frame)
         self._subscribe(PolygonStamped, "~/init_box", self.on_init_box, RELIABLE)
         self._subscribe(RegionOfInterest, "~/init_roi", self.on_init_roi, RELIABLE)
         self._subscribe(CameraInfo, "camera_info", self.space.on_camera_info, NEWEST_ONLY)
         self._subscribe(Image, "depth", self.space.on_depth, NEWEST_ONLY)
         self._active = True
-        return super().on_activate(state)
+        self.activated.callback(setattr, self, "_active", False)
 
-    def share_with(self, node: TrackerNode) -> None:
-        """Let another node look at this one's images."""
-        if node not in self._sharing:
-            self._sharing.append(node)
-
-    def _take_images(self) -> None:
-        """Subscribe to images, and say so if none come."""
-        compressed = self._settings.image_transport == "compressed"
-        topic = self.resolve_topic_name("image") + ("/compressed" if compressed else "")
-        kind = CompressedImage if compressed else Image
-        self._image_input = self._subscribe(kind, topic, self.on_image, NEWEST_ONLY)
-        if self._settings.image_timeout > 0:
-            steady = Clock(clock_type=ClockType.STEADY_TIME)
-            self._silence = self.create_timer(
-                self._settings.image_timeout, self._on_silence, clock=steady
-            )
-            self._inputs.append((self.destroy_timer, self._silence))
-
-    def on_deactivate(self, state: LifecycleState) -> TransitionCallbackReturn:
-        """Leave the inputs; the track is kept."""
-        self._active = False
-        while self._inputs:
-            destroy, entity = self._inputs.pop()
-            destroy(entity)
-        return super().on_deactivate(state)
-
-    def on_cleanup(self, state: LifecycleState) -> TransitionCallbackReturn:
-        """Drop the track and take outputs and services away."""
-        self._pursuit.drop("waiting for a box")
-        self._outputs.destroy()
-        self.destroy_publisher(self._diagnostics)
-        self.destroy_timer(self._reporter)
-        self.destroy_guard_condition(self._wake)
-        while self._offered:
-            self.destroy_service(self._offered.pop())
-        return super().on_cleanup(state)
-
-    def on_shutdown(self, state: LifecycleState) -> TransitionCallbackReturn:
-        """Stop whatever runs."""
-        self.on_deactivate(state)
-        return super().on_shutdown(state)
+    def _kinds(self) -> dict[str, type]:
+        """Message type of each output."""
+        if vision_msgs is None:
+            self.get_logger().debug("vision_msgs is not installed: there is no ~/detections")
+            return OUTPUTS
+        return {**OUTPUTS, "detections": vision_msgs.Detection2DArray}
 
     def _new_pursuit(self) -> Pursuit:
         return Pursuit(read(self, TrackerConfig), self._settings, self.get_logger())
+
+    def _new_images(self) -> ImageStream:
+        compressed = self._settings.image_transport == "compressed"
+        return ImageStream(self, compressed, self._settings.image_timeout, self._hints)
 
     def _new_answers(self) -> Answers:
         name = self.get_fully_qualified_name()
         return Answers(name, self._outputs, self.space, self._settings)
 
-    def _subscribe(self, kind: Any, topic: str, callback: Any, qos: QoSProfile) -> Any:
+    def _subscribe(self, kind: Any, topic: str, callback: Any, qos: QoSProfile) -> None:
         subscription = self.create_subscription(
             kind,
             topic,
@@ -218,23 +160,19 @@ class TrackerNode(LifecycleNode):
             event_callbacks=subscription_events(self, topic),
             qos_overriding_options=QoSOverridingOptions.with_default_policies(),
         )
-        self._inputs.append((self.destroy_subscription, subscription))
-        return subscription
+        self.activated.callback(self.destroy_subscription, subscription)
 
     # Inputs ---------------------------------------------------------------------------------
 
     def on_image(self, message: ImageMessage) -> None:
-        """Process one image: start the box that waits for it, or follow the track, and publish."""
-        arrival = time.monotonic()
-        shared = Conversion(message) if self._sharing else None
-        frame = Frame(message, self._stamp_of(message.header), arrival, shared)
-        for node in (self, *self._sharing):
-            node.on_frame(frame)
-        if shared is not None:
-            shared.close()
+        """Process one image: start the box that waits for it, or follow the track, and publish.
+
+        Other nodes on the same images get it as well.
+        """
+        self.images.take(message)
 
     def on_frame(self, frame: Frame) -> None:
-        """Process a frame that this node or another one took."""
+        """Process one frame of the stream."""
         if self._active and self._enabled:
             self._pursuit.on_frame(frame)
             self._work()
@@ -282,16 +220,6 @@ class TrackerNode(LifecycleNode):
             self._pursuit.session.lose(f"{reason}: send a new box")
             self.get_logger().warning(f"target lost: {reason}")
 
-    def _stamp_of(self, header: Header) -> int:
-        """The image's stamp, or the time of arrival where a driver leaves it at zero, ns."""
-        stamp = stamp_ns(header)
-        if stamp == 0:
-            self._hints.once(
-                "no stamp", "images carry no stamp: the time of arrival is taken, set header.stamp"
-            )
-            return int(self.get_clock().now().nanoseconds)
-        return stamp
-
     # Parameters, services, hints ------------------------------------------------------------
 
     def _check_parameters(self, parameters: list[Parameter]) -> SetParametersResult:
@@ -323,13 +251,6 @@ class TrackerNode(LifecycleNode):
         response.success = True
         response.message = "images are processed" if self._enabled else "images are ignored"
         return response
-
-    def _on_silence(self) -> None:
-        """Once after the start: if no image came, say what is waited for."""
-        self._silence.cancel()
-        if not self._pursuit.started and self._enabled:
-            timeout = self._settings.image_timeout
-            self._hints.once("silence", explain_silence(self, self._image_input, timeout))
 
     def _report(self) -> None:
         """Publish on /diagnostics."""

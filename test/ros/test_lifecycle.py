@@ -1,7 +1,9 @@
 """The managed node as a manager in another node sees it, by its services."""
 
+import pytest
 from lifecycle_msgs.msg import State, Transition
 from lifecycle_msgs.srv import ChangeState, GetState
+from rclpy.lifecycle import TransitionCallbackReturn
 from rclpy.node import Node
 from rclpy.parameter import Parameter
 from sensor_msgs.msg import Image
@@ -44,3 +46,27 @@ def test_by_itself_it_is_active(graph):
     manager = graph.add(Node("manager", context=graph.context))
     answer = called(graph, manager, GetState, "get_state", GetState.Request())
     assert answer.current_state.id == State.PRIMARY_STATE_ACTIVE
+
+
+def test_a_configuration_that_fails_tells_why_and_leaves_nothing_behind(graph, monkeypatch):
+    by_hand = [Parameter("autostart", value=False)]
+    node = graph.add(TrackerNode(context=graph.context, parameter_overrides=by_hand))
+    before = node.get_publisher_names_and_types_by_node("tracker", "/")
+
+    def broken(*_):
+        raise OSError("on purpose")
+
+    monkeypatch.setattr(node, "create_guard_condition", broken)  # the last thing that is made
+    assert node.trigger_configure() is TransitionCallbackReturn.FAILURE
+    assert node.get_publisher_names_and_types_by_node("tracker", "/") == before
+    with pytest.raises(RuntimeError, match="on purpose"):
+        node.start()
+    monkeypatch.undo()
+    node.start()
+
+
+def test_a_shutdown_takes_everything_away(graph):
+    node = graph.add(TrackerNode(context=graph.context))
+    node.trigger_shutdown()
+    assert not [s for s in node.subscriptions if s.topic_name.startswith("/image")]
+    assert not [p for p in node.publishers if p.topic_name.startswith("/tracker/box")]

@@ -80,6 +80,32 @@ def test_a_disabled_leader_still_feeds_the_others(pair, made_footage):
     assert dict(right.sent)["status"].header == header_at(1.0)
 
 
+@pytest.mark.parametrize("off", ["left", "right"])
+def test_either_may_be_switched_off(pair, made_footage, off):
+    """Images come in while any node is active; each transition leaves the other's as they are."""
+    nodes = dict(zip(("left", "right"), pair, strict=True))
+    gone = nodes.pop(off)
+    (stays,) = nodes.values()
+
+    def subscriptions() -> int:
+        return sum(s.topic_name == "/image" for hand in pair for s in hand.node.subscriptions)
+
+    gone.node.trigger_deactivate()
+    assert subscriptions() == 1
+    stays.image(made_footage[0][0], 1.0)
+    assert dict(stays.sent)["status"].header == header_at(1.0)
+    assert not gone.sent
+    stays.node.trigger_deactivate()
+    assert subscriptions() == 0
+    gone.node.trigger_activate()
+    gone.image(made_footage[0][1], 2.0)
+    assert gone.sent
+    stays.node.trigger_activate()
+    gone.node.destroy_node()
+    stays.image(made_footage[0][2], 3.0)
+    assert dict(stays.sent)["status"].header == header_at(3.0)
+
+
 def test_one_process_hosts_them(processes, local_graph, made_footage):
     frames, box = made_footage
     processes("tracker", "--targets", "left,right")
@@ -118,4 +144,5 @@ def test_a_wrong_name_is_refused(processes):
 
 
 def test_nodes_by_default_are_alone(graph):
-    assert graph.add(TrackerNode(context=graph.context))._sharing == []
+    first, second = (graph.add(TrackerNode(name, context=graph.context)) for name in "ab")
+    assert first.images is not second.images

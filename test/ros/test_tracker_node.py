@@ -320,7 +320,10 @@ def test_nothing_is_made_for_nobody(graph, made_footage, monkeypatch):
         (lambda hand, frames: hand.feed(Image(encoding="vapour", width=1, height=1)), "vapour"),
         (lambda hand, frames: hand.box((20, 40, 20, 32)), "before any image"),
         (lambda hand, frames: hand.image(frames[0], 0), "no stamp"),
-        (lambda hand, frames: hand.node._on_silence(), "no image after 5 s: waiting on /image"),
+        (
+            lambda hand, frames: hand.node.images.on_silence(),
+            "no image after 5 s: waiting on /image",
+        ),
     ],
 )
 def test_hints_are_given_once(hand, made_footage, monkeypatch, fault, key):

@@ -1,0 +1,91 @@
+"""A lifecycle node that can start itself, tells what fails and takes away what it made."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from contextlib import ExitStack
+from typing import Any
+
+from rclpy.lifecycle import LifecycleNode, LifecycleState, TransitionCallbackReturn
+
+
+class ManagedNode(LifecycleNode):
+    """The four transitions as plain methods to fill in, which may raise what they like.
+
+    :meth:`configure` and :meth:`activate` put what undoes their work on :attr:`configured` and
+    :attr:`activated`; it is called by the transition back, on a shutdown, and when they fail
+    half-way.
+
+    Attributes:
+        configured: callbacks that undo :meth:`configure`, called last first.
+        activated: the same for :meth:`activate`.
+
+    Args:
+        name: node name.
+        **options: of rclpy's Node.
+    """
+
+    def __init__(self, name: str, **options: Any) -> None:
+        super().__init__(name, **options)
+        self.configured = ExitStack()
+        self.activated = ExitStack()
+        self._failure: Exception | None = None
+
+    def configure(self) -> None:
+        """Make what lasts until the node is cleaned up."""
+
+    def activate(self) -> None:
+        """Begin the work that lasts until the node is deactivated."""
+
+    def start(self) -> None:
+        """Configure and activate without a manager; raises RuntimeError with the reason."""
+        for transition in (self.trigger_configure, self.trigger_activate):
+            if transition() is not TransitionCallbackReturn.SUCCESS:
+                raise RuntimeError(f"the node did not start: {self._failure!r}")
+
+    def on_configure(self, state: LifecycleState) -> TransitionCallbackReturn:
+        """Unconfigured -> inactive."""
+        if not self._told(self.configure, self.configured):
+            return TransitionCallbackReturn.FAILURE
+        return super().on_configure(state)
+
+    def on_activate(self, state: LifecycleState) -> TransitionCallbackReturn:
+        """Inactive -> active."""
+        if not self._told(self.activate, self.activated):
+            return TransitionCallbackReturn.FAILURE
+        return super().on_activate(state)
+
+    def on_deactivate(self, state: LifecycleState) -> TransitionCallbackReturn:
+        """Active -> inactive."""
+        self.activated.close()
+        return super().on_deactivate(state)
+
+    def on_cleanup(self, state: LifecycleState) -> TransitionCallbackReturn:
+        """Inactive -> unconfigured."""
+        self.configured.close()
+        return super().on_cleanup(state)
+
+    def on_shutdown(self, state: LifecycleState) -> TransitionCallbackReturn:
+        """Any state -> finalized."""
+        self._undo()
+        return super().on_shutdown(state)
+
+    def destroy_node(self) -> None:
+        """Undo what was made, then destroy the node."""
+        self._undo()
+        super().destroy_node()
+
+    def _undo(self) -> None:
+        self.activated.close()
+        self.configured.close()
+
+    def _told(self, work: Callable[[], None], undo: ExitStack) -> bool:
+        """Whether a transition's work was done; tells why not: rclpy swallows what it raises."""
+        try:
+            work()
+        except Exception as error:
+            undo.close()
+            self._failure = error
+            self.get_logger().fatal(f"{work.__name__} failed: {error!r}")
+            return False
+        return True
