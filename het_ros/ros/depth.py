@@ -14,6 +14,7 @@ from het_ros.tracking.box import Box
 
 INNER = 0.7  # this much of the box's width and height is looked at: the rest is background
 MOST_SAMPLES = 4096
+FARTHEST = 1e6  # m: no camera measures that; sums of larger float32 overflow
 LEAST_VALID = 0.1  # share of the samples with a depth at all
 LEAST_SHARE = 0.15  # share of the valid samples that a surface needs to be the target
 GAP = (0.15, 0.04)  # m and share of the depth: a larger step starts another surface
@@ -42,7 +43,7 @@ def metres_of(message: Image) -> NDArray[np.float32]:
     else:
         raise ImageError(f"depth is 16UC1 (mm) or 32FC1 (m), not {message.encoding!r}")
     metres = pixels.astype(np.float32) * np.float32(scale)
-    return np.where(np.isfinite(metres) & (metres > 0), metres, np.float32(np.nan))
+    return np.where((metres > 0) & (metres < FARTHEST), metres, np.float32(np.nan))
 
 
 def depth_in(box: Box, size: tuple[int, int], metres: NDArray[np.float32]) -> float:

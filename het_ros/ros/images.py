@@ -106,7 +106,10 @@ def decode(message: CompressedImage) -> Pixels:
         raise ImageError(f"the JPEG ends early, after {data.size} bytes: is the link losing data?")
     # The Exif rotation is left alone: boxes are drawn on the sensor's own pixels.
     flags = cv2.IMREAD_ANYCOLOR | cv2.IMREAD_IGNORE_ORIENTATION
-    pixels = cv2.imdecode(data, flags) if data.size else None
+    try:
+        pixels = cv2.imdecode(data, flags) if data.size else None
+    except cv2.error:  # a header that claims more pixels than OpenCV takes
+        pixels = None
     if pixels is None:
         raise ImageError(
             f"{data.size} bytes of format {message.format!r} are no JPEG or PNG image"

@@ -35,24 +35,39 @@ def ray_of(
     matrix = np.array(info.k, float).reshape(3, 3) if matrix is None else matrix
     if not (np.isfinite(matrix).all() and matrix[0, 0] > 0 and matrix[1, 1] > 0):
         raise CameraError("camera_info has no calibration (fx, fy are 0): calibrate the camera")
+    if matrix[1, 0] != 0 or (matrix[2] != (0, 0, 1)).any():
+        raise CameraError("camera_info has no camera matrix [fx s cx; 0 fy cy; 0 0 1]: calibrate")
     # A calibration counts from the centre of the top-left pixel, a box from its corner.
     x, y = _on_sensor(point, info, size)
     pixel = np.array([[[x - 0.5, y - 0.5]]])
     distortion = np.array([] if rectified else info.d, float)
-    if not distortion.any():
-        inverse = np.linalg.inv(matrix)
-        slope = (inverse @ [x - 0.5, y - 0.5, 1.0])[:2]
-    elif info.distortion_model in FISHEYE:
-        slope = cv2.fisheye.undistortPoints(pixel, matrix, distortion[:4])[0, 0]
-    elif info.distortion_model in PINHOLE:
-        slope = _undistort(pixel, matrix, distortion)[0, 0]
-    else:
-        known = ", ".join(name for name in (*PINHOLE, *FISHEYE) if name)
-        raise CameraError(f"the distortion model {info.distortion_model!r} is none of {known}")
+    slope = _slope(pixel, matrix, distortion, info.distortion_model)
     ray = np.array([slope[0], slope[1], 1.0])
-    if not np.isfinite(ray).all():
+    if not np.isfinite(length := np.linalg.norm(ray)):
         raise CameraError("the distortion has no inverse at this point: check the calibration")
-    return ray / np.linalg.norm(ray)
+    return ray / length
+
+
+def _slope(
+    pixel: NDArray[np.float64],
+    matrix: NDArray[np.float64],
+    distortion: NDArray[np.float64],
+    model: str,
+) -> NDArray[np.float64]:
+    """(x / z, y / z) of the ray through a pixel (1, 1, 2); may be NaN or infinite."""
+    if not distortion.any():
+        return (np.linalg.inv(matrix) @ [*pixel[0, 0], 1.0])[:2]
+    try:
+        if model in FISHEYE:
+            return cv2.fisheye.undistortPoints(pixel, matrix, distortion[:4])[0, 0]
+        if model in PINHOLE:
+            return _undistort(pixel, matrix, distortion)[0, 0]
+    except cv2.error as error:
+        raise CameraError(
+            f"{distortion.size} numbers are no distortion of the model {model!r}: calibrate"
+        ) from error
+    known = ", ".join(name for name in (*PINHOLE, *FISHEYE) if name)
+    raise CameraError(f"the distortion model {model!r} is none of {known}")
 
 
 def bearing_message(ray: NDArray[np.float64], header: Header) -> Vector3Stamped:

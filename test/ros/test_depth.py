@@ -104,6 +104,13 @@ def test_encodings(encoding, kind, scale, big_endian):
     np.testing.assert_allclose(metres_of(message), [[1.5, np.nan], [2.25, 3.0]], rtol=1e-6)
 
 
+def test_what_is_farther_than_any_camera_sees_is_no_depth():
+    data = wall(2.0**127).tobytes()  # two of them make an infinite sum
+    message = Image(width=160, height=120, encoding="32FC1", step=640, data=data)
+    with pytest.raises(DepthError, match="have a depth"):
+        depth_in(BOX, SIZE, metres_of(message))
+
+
 def test_other_encodings_are_refused():
     with pytest.raises(ImageError, match="depth is"):
         metres_of(Image(width=1, height=1, encoding="rgb8", step=3, data=bytes(3)))

@@ -1,4 +1,5 @@
 import array
+import struct
 
 import cv2
 import numpy as np
@@ -241,6 +242,11 @@ def test_jpeg_is_close(shape):
             "early",
         ),
         (bytes(20), "16UC1; compressedDepth", "depth"),
+        (
+            b"BM" + struct.pack("<8xI", 54) + struct.pack("<IiiHHI20x", 40, 1, 2**25, 1, 8, 0),
+            "a BMP of 33554432 rows",
+            "no JPEG",
+        ),
     ],
 )
 def test_compressed_data_that_is_no_image_is_refused(data, name, says):

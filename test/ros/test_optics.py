@@ -76,6 +76,10 @@ def test_rectified_images_use_p_and_no_distortion():
     "change, says",
     [
         ({"k": [0.0] * 9}, "no calibration"),
+        ({"k": [1.0] * 9}, "no camera matrix"),  # singular
+        ({"d": [0.1] * 6}, "6 numbers"),
+        ({"d": [0.1], "distortion_model": "equidistant"}, "1 numbers"),
+        ({"d": [], "k": [1e-300, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0]}, "no inverse"),
         ({"distortion_model": "my_own", "d": [0.1]}, "my_own"),
         ({"width": 1280, "height": 960}, "1280 x 960"),
     ],
