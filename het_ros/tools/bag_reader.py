@@ -28,6 +28,7 @@ from het_ros.tools.bag_messages import (
     box_of,
     stamp_of,
 )
+from het_ros.tools.bag_repair import is_whole
 from het_ros.tools.bag_types import is_jazzys
 from het_ros.tools.bag_writer import TYPESTORE
 from het_ros.tracking.box import Box
@@ -69,17 +70,15 @@ class BagReader:
         image_topic: topic of the images; empty when there are none.
 
     Raises:
-        BagError: there is no bag at ``path``, it is broken, leads out of its folder, or has
+        BagError: there is no bag at ``path``, it is broken or was cut off, leads out of its folder, or has
             several image topics.
     """
 
     def __init__(self, path: Path | str, image_topic: str | None = None) -> None:
         self.path = Path(path)
-        if not (self.path / "metadata.yaml").is_file():
-            raise BagError(f"{path} is no rosbag2: there is no metadata.yaml in that folder")
-        _check_folder(self.path)
+        source = _source(self.path)
         try:
-            self._reader = Reader(self.path)
+            self._reader = Reader(source)
             self._reader.open()
         except Exception as error:  # a stranger's bytes: rosbags raises some twenty kinds
             raise BagError(f"{path} cannot be read as a bag: {error!r}") from error
@@ -192,6 +191,30 @@ class BagReader:
             return reading(message)
         except (ValueError, LookupError) as error:
             raise BagError(f"{self.path}: a ground truth that is none: {error}") from error
+
+
+def _source(path: Path) -> Path:
+    """What to open of a bag's folder: itself, or its only file where there is no metadata.
+
+    A recording that a full disk ended has no metadata.yaml, one that was killed no end either.
+
+    Raises:
+        BagError: there is no bag, or it has to be repaired.
+    """
+    if (path / "metadata.yaml").is_file():
+        _check_folder(path)
+        return path
+    files = list(path.glob("*.mcap")) if path.is_dir() else []
+    if len(files) != 1:
+        raise BagError(f"{path} is no rosbag2: there is no metadata.yaml in that folder")
+    if not files[0].resolve().is_relative_to(path.resolve()):
+        raise BagError(f"{files[0]} leads out of the bag's folder: put the file itself there")
+    if not is_whole(files[0]):
+        raise BagError(
+            f"{path} was cut off while it was recorded: "
+            f"`python -m het_ros.tools.bag_repair {files[0]}` ends it so that it can be read"
+        )
+    return files[0]
 
 
 def _check_folder(path: Path) -> None:

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import errno
+import os
+from contextlib import suppress
 from pathlib import Path
 from types import TracebackType
 from typing import Any
@@ -10,14 +13,24 @@ from rosbags.interfaces import Connection
 from rosbags.rosbag2 import CompressionFormat, CompressionMode, StoragePlugin, Writer
 from rosbags.typesys import Stores, get_typestore
 
+from het_ros.tools.bag_repair import cut_and_end, is_whole
+
 TYPESTORE = get_typestore(Stores.ROS2_JAZZY)
+RESERVE = 2 * 2**20  # bytes: what is not on the disk yet (1 MB at most), the index and metadata
+
+
+class BagWriteError(OSError):
+    """A bag could not be written to its end; the text says why, and what is kept."""
 
 
 class BagWriter:
     """A bag to which messages are added one by one; it is whole again after every exit.
 
     rosbags' own writer throws the index away when an exception leaves its block. A recording that
-    was interrupted is worth keeping, so this one closes the bag in any case.
+    was interrupted is worth keeping, so this one closes the bag in any case. Space for that is
+    reserved from the start: on a full disk all that was added before is kept. Where nothing can
+    be written at all, what is on the disk is ended so that it can be read (see
+    :mod:`het_ros.tools.bag_repair`).
 
     Args:
         path: folder of the bag; it must not exist yet.
@@ -25,6 +38,7 @@ class BagWriter:
 
     Raises:
         FileExistsError: there is something at ``path`` already.
+        OSError: nothing can be written there, or less than a recording takes.
     """
 
     def __init__(self, path: Path | str, *, zstd: bool = False) -> None:
@@ -35,9 +49,23 @@ class BagWriter:
         if zstd:
             self._writer.set_compression(CompressionMode.STORAGE, CompressionFormat.ZSTD)
         self._connections: dict[str, Connection] = {}
+        self._file = self.path / f"{self.path.name}.mcap"
+        self._reserve = self.path / f"{self.path.name}.reserve"
+        self._sound = 0  # so many bytes of the file are whole records
+        self._broken: OSError | None = None
 
     def __enter__(self) -> BagWriter:
         self._writer.open()
+        try:
+            with self._reserve.open("xb") as file:
+                os.posix_fallocate(file.fileno(), 0, RESERVE)
+        except OSError as error:
+            if error.errno == errno.ENOSPC:
+                self._leave_nothing()
+                raise BagWriteError(
+                    f"{self.path} cannot be written: {_words(error)}; "
+                    f"a recording takes {RESERVE / 1e6:.0f} MB at least"
+                ) from error
         return self
 
     def __exit__(
@@ -46,7 +74,16 @@ class BagWriter:
         error: BaseException | None,
         trace: TracebackType | None,
     ) -> None:
-        self._writer.close()
+        with suppress(OSError):
+            self._reserve.unlink()
+        try:
+            if self._broken:
+                self._back_to_sound()
+            else:
+                self._sound = self._position()
+            self._writer.close()
+        except OSError as why:
+            self._end_what_there_is(why)
 
     def add_topic(self, topic: str, kind: str) -> None:
         """Declare a topic, so that it is in the bag even if nothing is ever sent on it."""
@@ -61,6 +98,62 @@ class BagWriter:
         self.write_cdr(topic, kind, TYPESTORE.serialize_cdr(message, kind), stamp)
 
     def write_cdr(self, topic: str, kind: str, cdr: bytes | memoryview, stamp: int) -> None:
-        """Add a message of type ``kind`` ("sensor_msgs/msg/Image") that is CDR bytes already."""
+        """Add a message of type ``kind`` ("sensor_msgs/msg/Image") that is CDR bytes already.
+
+        Raises:
+            BagWriteError: the disk does not take it; what was added before is kept.
+        """
         self.add_topic(topic, kind)
-        self._writer.write(self._connections[topic], stamp, cdr)
+        if not self._broken:
+            self._sound = self._position()
+            connection = self._connections[topic]
+            try:
+                self._writer.write(connection, stamp, cdr)
+                return
+            except OSError as why:
+                self._broken = why
+                # It failed to put a chunk on the disk that holds this message: it is kept too.
+                self._writer.counts[connection.id] += 1
+        raise BagWriteError(
+            f"{self.path} cannot be written: {_words(self._broken)}; "
+            "what was recorded before is kept there"
+        ) from self._broken
+
+    def _leave_nothing(self) -> None:
+        """Take back a bag that holds nothing yet."""
+        self._writer.abort()
+        for file in (self._reserve, self._file):
+            file.unlink(missing_ok=True)
+        with suppress(OSError):
+            self.path.rmdir()
+
+    def _position(self) -> int:
+        return int(self._writer.storage.bio.tell()) if self._writer.storage else 0
+
+    def _back_to_sound(self) -> None:
+        """Take back the record that was written in part; raises OSError where that fails."""
+        storage = self._writer.storage
+        if storage is not None:
+            storage.bio.seek(self._sound)
+            storage.bio.truncate()
+
+    def _end_what_there_is(self, why: OSError) -> None:
+        """End the file behind its last whole record; raises BagWriteError in any case."""
+        with suppress(OSError):
+            self._writer.abort()
+        try:
+            if not is_whole(self._file):
+                cut_and_end(self._file, self._sound)
+        except OSError:
+            raise BagWriteError(
+                f"{self.path} cannot be written: {_words(why)}; what is there can be read after "
+                f"`python -m het_ros.tools.bag_repair {self._file}` on a disk with space"
+            ) from why
+        raise BagWriteError(
+            f"{self.path} cannot be written to its end: {_words(why)}; "
+            "what is on the disk can be read"
+        ) from why
+
+
+def _words(error: OSError | None) -> str:
+    return (error.strerror if error else None) or repr(error)
