@@ -21,6 +21,7 @@ from het_ros.tracking.box import Box
 from het_ros.tracking.estimate import Estimate
 
 SMALLEST_AREA = 16.0  # px^2: under this there is nothing to learn from
+SMALLEST_SIDE = 1.0  # px: a narrower box is a slip, and costs as much as a long one
 
 
 class BoxError(ValueError):
@@ -31,7 +32,8 @@ def box_from_polygon(message: PolygonStamped) -> Box:
     """The bounds of a polygon's corners, px.
 
     Raises:
-        BoxError: fewer than 2 points, a NaN or infinite corner, an area under 16 px^2.
+        BoxError: fewer than 2 points, a NaN or infinite corner, an area under 16 px^2 or a side
+            under 1 px.
     """
     points = message.polygon.points
     if len(points) < 2:
@@ -53,8 +55,11 @@ def box_from_roi(message: RegionOfInterest) -> Box:
 
 
 def _checked(x: float, y: float, w: float, h: float) -> Box:
-    if w * h < SMALLEST_AREA:
-        raise BoxError(f"the box is {w:g} x {h:g} px; it takes {SMALLEST_AREA:g} px^2 or more")
+    if w * h < SMALLEST_AREA or min(w, h) < SMALLEST_SIDE:
+        raise BoxError(
+            f"the box is {w:g} x {h:g} px; it takes {SMALLEST_AREA:g} px^2 or more, and sides of "
+            f"{SMALLEST_SIDE:g} px or more"
+        )
     return Box(float(x), float(y), float(w), float(h))
 
 

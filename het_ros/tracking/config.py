@@ -27,6 +27,9 @@ class TrackerConfig:
     """
 
     seed: int = parameter(0, "seed of the random sub-patches and features", low=0, high=2**31 - 1)
+    most_memory: float = parameter(
+        300.0, "a box whose target would take more is refused", unit="MB", low=1, high=1e5
+    )
     # Appearance: sub-patches and compressive features.
     channels: tuple[str, ...] = parameter(
         _ALL_CHANNELS, "image channels that features are taken from", choices=CHANNEL_NAMES
@@ -212,6 +215,7 @@ class TrackerConfig:
         """
         return cls(
             seed=seed,
+            most_memory=2000.0,
             channels=("b", "g", "r"),
             working_side=0.0,
             cell=1,

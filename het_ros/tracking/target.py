@@ -21,6 +21,7 @@ from het_ros.tracking.compressive import (
     integral_images,
 )
 from het_ros.tracking.config import TrackerConfig
+from het_ros.tracking.cost import check_cost
 from het_ros.tracking.estimate import Estimate, Patch, State
 from het_ros.tracking.motion import AdaptiveKalman
 from het_ros.tracking.response import find_peak
@@ -102,6 +103,9 @@ class Target:
         config: parameters.
         image: (H, W, 3) or (H, W) uint8.
         box: the target in it.
+
+    Raises:
+        ValueError: it would take more memory than ``most_memory``.
     """
 
     def __init__(self, config: TrackerConfig, image: Image, box: Box) -> None:
@@ -111,6 +115,7 @@ class Target:
         side = math.sqrt(box.area)
         rng = np.random.default_rng(config.seed)
         self._cells, self._unit = _grid(config, box)
+        check_cost(config, self._cells)
         self._radius = config.search_radius / config.cell
         self._sub_patches = draw_sub_patches(
             (self._cells[0], self._cells[1]), config.sub_patches, config.sub_patch_fraction, rng

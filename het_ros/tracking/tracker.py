@@ -50,8 +50,8 @@ class HierarchicalEnsembleTracker:
             The estimate of this first frame.
 
         Raises:
-            ValueError: the image is not of that kind, or the box lies wholly outside it. The
-                target followed before stays.
+            ValueError: the image is not of that kind, or the box lies wholly outside it, or
+                would take more than ``most_memory``. The target followed before stays.
         """
         _check_image(image)
         height, width = image.shape[:2]

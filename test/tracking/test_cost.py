@@ -1,0 +1,44 @@
+import tracemalloc
+
+import pytest
+
+from het_ros import Box, HierarchicalEnsembleTracker, TrackerConfig
+from het_ros.tracking.cost import megabytes
+
+
+@pytest.mark.parametrize(
+    "config, box",
+    [
+        (TrackerConfig(), Box(40, 40, 1e6, 1e-5)),  # as narrow as that, it took all memory
+        (TrackerConfig(), Box(-1e6, 40, 2e6, 2)),
+        (TrackerConfig(working_side=1000.0, cell=1), Box(40, 40, 20, 30)),
+        (TrackerConfig(features=2000, most_memory=50.0), Box(40, 40, 20, 30)),
+        (TrackerConfig.paper(), Box(-1000, -1000, 3000, 3000)),
+    ],
+)
+def test_what_would_take_too_much_memory_is_refused(config, box, noise):
+    tracker = HierarchicalEnsembleTracker(config)
+    with pytest.raises(ValueError, match="most_memory"):
+        tracker.init(noise, box)
+
+
+@pytest.mark.parametrize(
+    "config, box, cells",
+    [
+        (TrackerConfig(), Box(40, 40, 20, 20), (24, 24)),
+        (TrackerConfig(features=1000), Box(40, 40, 20, 20), (24, 24)),
+        (TrackerConfig(working_side=200.0), Box(40, 40, 20, 20), (100, 100)),
+        (TrackerConfig(search_radius=200.0), Box(40, 40, 20, 20), (24, 24)),
+        (TrackerConfig.paper(), Box(40, 40, 60, 60), (60, 60)),
+    ],
+)
+def test_the_estimate_is_right_to_a_factor(config, box, cells, noise):
+    tracemalloc.start()
+    try:
+        tracker = HierarchicalEnsembleTracker(config)
+        tracker.init(noise, box)
+        tracker.update(noise, 1 / 30)
+        peak = tracemalloc.get_traced_memory()[1] / 1e6
+    finally:
+        tracemalloc.stop()
+    assert peak / 2 < megabytes(config, cells) < 3 * peak
