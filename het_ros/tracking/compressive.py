@@ -7,7 +7,8 @@ sub-patch reads the same maps.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections import Counter
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
@@ -17,6 +18,10 @@ from numpy.typing import NDArray
 
 Integrals = Sequence[NDArray[Any]]
 Features = NDArray[np.floating[Any]]
+_Operation = tuple[Callable[..., Any], Features, Features, Features]
+
+_EXACT_IN_FLOAT32 = 2**24  # whole numbers below this
+_CACHE = 2**18  # so many sums stay in a processor's cache
 
 
 class Rectangle(NamedTuple):
@@ -87,51 +92,128 @@ def integral_images(channels: Sequence[NDArray[Any]]) -> list[NDArray[Any]]:
     return [np.asarray(cv2.integral(np.ascontiguousarray(channel))) for channel in channels]
 
 
-def raw_feature_maps(
-    integrals: Integrals, matrix: MeasurementMatrix, buffer: NDArray[Any] | None = None
-) -> NDArray[Any]:
+def raw_feature_maps(integrals: Integrals, matrix: MeasurementMatrix) -> Features:
     """L = R H (eq. 1) for the sub-patches at all places of a window.
 
     Args:
-        integrals: C integral images (H + 1, W + 1) of one dtype, contiguous.
+        integrals: C integral images (H + 1, W + 1) of one dtype.
         matrix: R, with sub-patches of (w, h).
-        buffer: an array of this function that may be overwritten.
 
     Returns:
-        (m, H - h + 1, W - w + 1) of the integrals' dtype: the features of the sub-patches with
-        their corners at column x and row y; a view of an array that can be the next ``buffer``.
+        (m, H - h + 1, W - w + 1) float64: the features of the sub-patches with their corners at
+        column x and row y.
     """
+    lines, columns = integrals[0].shape
     width, height = matrix.size
-    stride = integrals[0].shape[1]
-    rows = integrals[0].shape[0] - height
-    shape = (len(matrix.rows), rows, stride)
-    if buffer is None or buffer.shape != shape or buffer.dtype != integrals[0].dtype:
-        buffer = np.empty(shape, integrals[0].dtype)
-    # Maps and integral images are read as flat arrays with the same stride: slices of those are
-    # contiguous and several times faster than slices of rows and columns. What comes of places
-    # from column W - w + 1 on runs over the border and is cut off at the end.
-    places = rows * stride - width
-    flat = [integral.reshape(-1) for integral in integrals]
-    band = np.empty(places + width, buffer.dtype)
-    for feature, rectangles in zip(buffer.reshape(len(buffer), -1), matrix.rows, strict=True):
-        total = feature[:places]
-        started = False
-        for channel, x0, y0, x1, y1, sign in rectangles:
-            # First the sums over all rows of the rectangle, then between two columns of them.
-            integral, span = flat[channel], places + x1 - x0
-            upper, lower = y0 * stride + x0, y1 * stride + x0
-            np.subtract(
-                integral[lower : lower + span], integral[upper : upper + span], out=band[:span]
-            )
-            left, right = band[:places], band[x1 - x0 : span]
-            plus, minus = (right, left) if sign > 0 else (left, right)
-            if started:
-                np.add(total, plus, out=total)
-                np.subtract(total, minus, out=total)
-            else:
-                np.subtract(plus, minus, out=total)
-                started = True
-    return buffer[:, :, : stride - width]
+    maps = np.empty((len(matrix.rows), lines - height, columns - width))
+    as_they_are = np.zeros(len(maps)), np.ones(len(maps))
+    RectangleSums(matrix, integrals, maps, *as_they_are)(integrals)
+    return maps
+
+
+class RectangleSums:
+    """The features of one window after another, all of one size, into maps that stay.
+
+    Which numbers are added to which is worked out once: a frame is a list of additions and
+    subtractions between parts of buffers. All planes are read as flat arrays: parts of those are
+    contiguous, and several times faster than parts of rows and columns. What comes of the places
+    from column W - w + 1 on runs over the border and is cut off.
+
+    Args:
+        matrix: R, with sub-patches of (w, h).
+        integrals: C integral images (H + 1, W + 1), of which the shape and the dtype count. Sums
+            of whole numbers are exact: in float32 where all of them fit, else in float64.
+        maps: (m, H - h + 1, W - w + 1), where the features go.
+        centre: (m,), whole numbers; what is subtracted from a feature.
+        scale: (m,), what it is multiplied with then.
+    """
+
+    def __init__(
+        self,
+        matrix: MeasurementMatrix,
+        integrals: Integrals,
+        maps: Features,
+        centre: Features,
+        scale: Features,
+    ) -> None:
+        self.shape = integrals[0].shape
+        lines, stride = self.shape
+        width, height = matrix.size
+        whole = np.issubdtype(integrals[0].dtype, np.integer)
+        exact = whole and 255 * lines * stride < _EXACT_IN_FLOAT32
+        self._stack = np.zeros((len(integrals), *self.shape), np.float32 if exact else np.float64)
+        self._operations: list[_Operation] = []
+        self._bank = np.empty(0, self._stack.dtype)
+        # What comes of places up to here is asked for.
+        self._places = (lines - height) * stride - width
+        sums = np.zeros((lines - height, stride), self._stack.dtype)
+        total, wanted = sums.reshape(-1)[: self._places], sums[:, : stride - width]
+        self._scratch = np.empty(self._places + width, sums.dtype)
+        # Arrays of one number, not numbers: NumPy 1 would multiply in the sums' dtype.
+        centres, scales = centre.astype(sums.dtype)[:, None], scale[:, None, None]
+        features = sorted(range(len(maps)), key=lambda feature: matrix.rows[feature][0].channel)
+        channel, bands = -1, {}
+        for feature in features:
+            row = matrix.rows[feature]
+            if row[0].channel != channel:
+                channel = row[0].channel
+                bands = self._bands(
+                    [r for row in matrix.rows for r in row if r.channel == channel]
+                )
+            for k, rectangle in enumerate(row):
+                # First the sums over all rows of the rectangle, then between two columns of them.
+                band = self._band(rectangle, bands)
+                left, right = band[: self._places], band[rectangle.x1 - rectangle.x0 :]
+                plus, minus = (right, left) if rectangle.sign > 0 else (left, right)
+                if k:
+                    self._operations.append((np.add, total, plus, total))
+                    plus = total
+                self._operations.append((np.subtract, plus, minus, total))
+            # Centred first, where whole numbers are still exact.
+            self._operations.append((np.subtract, total, centres[feature], total))
+            self._operations.append((np.multiply, wanted, scales[feature], maps[feature]))
+
+    def __call__(self, integrals: Integrals) -> None:
+        """Write the features of a window into the maps.
+
+        Args:
+            integrals: C integral images of the shape and dtype said at first.
+        """
+        for plane, integral in zip(self._stack, integrals, strict=True):
+            plane[...] = integral
+        for operation, one, other, out in self._operations:
+            operation(one, other, out)
+
+    def _bands(self, rectangles: Sequence[Rectangle]) -> dict[int, Features]:
+        """Sums over so many rows of each column of a channel, flat, by number of rows.
+
+        Those that several ``rectangles`` of the channel share, or none where they are too many.
+        """
+        uses = Counter(rectangle.y1 - rectangle.y0 for rectangle in rectangles)
+        heights = [height for height, times in uses.items() if times > 1]
+        flat, stride = self._stack[rectangles[0].channel].reshape(-1), self.shape[1]
+        if len(heights) * flat.size > _CACHE:
+            return {}
+        # All channels in turn have theirs in the same place.
+        if self._bank.size < len(heights) * flat.size:
+            self._bank = np.zeros(len(heights) * flat.size, flat.dtype)
+        bands = self._bank[: len(heights) * flat.size].reshape(len(heights), flat.size)
+        for height, band in zip(heights, bands, strict=True):
+            size = flat.size - height * stride
+            lower, upper = flat[height * stride :], flat[:size]
+            self._operations.append((np.subtract, lower, upper, band[:size]))
+        return dict(zip(heights, bands, strict=True))
+
+    def _band(self, rectangle: Rectangle, bands: dict[int, Features]) -> Features:
+        """Sums over the rectangle's rows at each place and its width beyond the last of them."""
+        channel, x0, y0, x1, y1, _ = rectangle
+        upper, span = y0 * self.shape[1] + x0, self._places + x1 - x0
+        if y1 - y0 in bands:
+            return bands[y1 - y0][upper : upper + span]
+        flat, lower = self._stack[channel].reshape(-1), upper + (y1 - y0) * self.shape[1]
+        parts = flat[lower : lower + span], flat[upper : upper + span]
+        self._operations.append((np.subtract, *parts, self._scratch[:span]))
+        return self._scratch[:span]
 
 
 class CompressiveFeatures:
@@ -148,9 +230,8 @@ class CompressiveFeatures:
     def __init__(self, matrix: MeasurementMatrix, dtype: type[np.floating[Any]] = np.float64):
         self.matrix = matrix
         self._dtype = dtype
-        self._centre: NDArray[Any] | None = None
-        self._scale = np.ones((len(matrix.rows), 1, 1), dtype)
-        self._buffer: NDArray[Any] | None = None
+        self._standard: tuple[Features, Features] | None = None
+        self._sums: RectangleSums | None = None
         self._maps: Features = np.empty((0, 0, 0), dtype)
 
     def maps(self, integrals: Integrals) -> Features:
@@ -160,23 +241,20 @@ class CompressiveFeatures:
         further maps are centred and scaled with.
 
         Args:
-            integrals: C integral images (H + 1, W + 1) of one dtype, contiguous.
+            integrals: C integral images (H + 1, W + 1) of one dtype.
         """
-        raw = raw_feature_maps(integrals, self.matrix, self._buffer)
-        self._buffer = raw.base
-        if self._centre is None:
-            self._centre = self._fit(raw)
-        if self._maps.shape != raw.shape:
-            self._maps = np.empty(raw.shape, self._dtype)
-        # Centred first, where whole numbers are still exact.
-        np.subtract(raw, self._centre, out=self._maps, casting="unsafe")
-        self._maps *= self._scale
+        if self._sums is None or self._sums.shape != integrals[0].shape:
+            raw = raw_feature_maps(integrals, self.matrix)
+            self._standard = self._standard or self._fit(raw)
+            self._maps = raw.astype(self._dtype)
+            self._sums = RectangleSums(self.matrix, integrals, self._maps, *self._standard)
+        self._sums(integrals)
         return self._maps
 
-    def _fit(self, raw: NDArray[Any]) -> NDArray[Any]:
-        """Take the scale from raw maps (m, rows, columns) and return the centre (m, 1, 1)."""
-        deviation = raw.std(axis=(1, 2), keepdims=True)
+    def _fit(self, raw: Features) -> tuple[Features, Features]:
+        """Centre (m,) and scale (m,) of raw maps (m, rows, columns)."""
+        deviation = raw.std(axis=(1, 2))
         # A feature that is flat in the first frame is left in grey values per pixel.
         area = self.matrix.size[0] * self.matrix.size[1]
-        self._scale = (1 / np.where(deviation > 0, deviation, area)).astype(self._dtype)
-        return np.asarray(np.rint(raw.mean(axis=(1, 2), keepdims=True)).astype(raw.dtype))
+        scale = 1 / np.where(deviation > 0, deviation, area)
+        return np.rint(raw.mean(axis=(1, 2))), scale.astype(self._dtype)

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from typing import Any
 
+import cv2
 import numpy as np
 from numpy.typing import NDArray
 
@@ -44,6 +45,7 @@ class RidgeEnsembles:
         self._gram: Features | None = None  # (m + 1, m + 1)
         self._moment: Features = np.empty((0, 0))  # (m + 1, Q)
         self._votes: Features = np.empty((0, 0))  # (m + 1, Q)
+        self._rows: Features = np.empty((0, 0))  # (m + 1 + Q, places), used again
 
     def score_maps(self, features: Features) -> Features:
         """F_q at every place: (Q, rows, columns), about 1 on the target and 0 elsewhere.
@@ -65,20 +67,17 @@ class RidgeEnsembles:
             corners: (Q, 2) of the re-extracted sub-patches, px of the maps.
             chosen: (Q,), sub-patches whose labels are taken; the Gram matrix is common to all.
         """
-        flat = features.reshape(len(features), -1)
-        labels = self.labels(corners, features.shape[1:], flat.dtype)
-        weights = 1 + self._emphasis * labels.max(axis=0)
-        weights /= weights.sum()
-        weighted = flat * weights
-        gram, moment = _with_constant(flat, weighted, weights, labels)
+        gram, moment = self._statistics(features, corners)
         if self._gram is None:
             self._gram, self._moment = gram, moment
         else:
             rate = self._learning_rate
-            self._gram += rate * (gram - self._gram)
+            self._gram *= 1 - rate
+            self._gram += rate * gram
             self._moment[:, chosen] += rate * (moment - self._moment)[:, chosen]
-        regular = self._gram + self._ridge * np.eye(len(gram), dtype=gram.dtype)
-        self._votes = np.linalg.solve(regular, self._moment)
+        regular = self._gram.copy()
+        regular.ravel()[:: len(regular) + 1] += self._ridge
+        self._votes = _solved(regular, self._moment)
 
     def likelihood(self, features: Features, corners: Floats) -> float:
         """Mean score of the sub-patches at ``corners`` (Q, 2), cut to 0..1."""
@@ -89,11 +88,40 @@ class RidgeEnsembles:
 
     def labels(self, corners: Floats, shape: tuple[int, ...], dtype: Any = float) -> Features:
         """Gaussian labels (Q, rows * columns) of the sub-patches at ``corners`` (Q, 2)."""
+        labels = np.empty((len(corners), shape[0] * shape[1]), dtype)
+        self._write_labels(corners, shape, labels)
+        return labels
+
+    def _write_labels(self, corners: Floats, shape: tuple[int, ...], out: Features) -> None:
         sigma_x, sigma_y = self._label_sigma
         across = np.exp(-0.5 * ((np.arange(shape[1]) - corners[:, :1]) / sigma_x) ** 2)
         down = np.exp(-0.5 * ((np.arange(shape[0]) - corners[:, 1:]) / sigma_y) ** 2)
-        labels = down.astype(dtype)[:, :, None] * across.astype(dtype)[:, None, :]
-        return np.asarray(labels.reshape(len(corners), -1))
+        np.multiply(
+            down.astype(out.dtype)[:, :, None],
+            across.astype(out.dtype)[:, None, :],
+            out=out.reshape(len(corners), *shape),
+        )
+
+    def _statistics(self, features: Features, corners: Floats) -> tuple[Features, Features]:
+        """Weighted Gram matrix (m + 1, m + 1) and moments (m + 1, Q) with a constant 1 as feature.
+
+        One product of a matrix with itself, of which BLAS computes half: its rows are the
+        features, the constant and the labels, all times the root of the weights.
+        """
+        m = len(features)
+        flat = features.reshape(m, -1)
+        shape = (m + 1 + len(corners), flat.shape[1])
+        if self._rows.shape != shape or self._rows.dtype != flat.dtype:
+            self._rows = np.empty(shape, flat.dtype)
+        labels = self._rows[m + 1 :]
+        self._write_labels(corners, features.shape[1:], labels)
+        weights = 1 + self._emphasis * labels.max(axis=0)
+        weights /= weights.sum()
+        root = np.sqrt(weights, out=self._rows[m])
+        np.multiply(flat, root, out=self._rows[:m])
+        labels *= root
+        products = self._rows @ self._rows.T
+        return products[: m + 1, : m + 1].copy(), products[: m + 1, m + 1 :].copy()
 
     def _fitted(self) -> Features:
         if self._gram is None:
@@ -101,16 +129,8 @@ class RidgeEnsembles:
         return self._votes
 
 
-def _with_constant(
-    flat: Features, weighted: Features, weights: Features, labels: Features
-) -> tuple[Features, Features]:
-    """Weighted Gram matrix (m + 1, m + 1) and moments (m + 1, Q) with a constant 1 as feature."""
-    m, sub_patches = len(flat), len(labels)
-    gram = np.empty((m + 1, m + 1), flat.dtype)
-    moment = np.empty((m + 1, sub_patches), flat.dtype)
-    gram[:m, :m] = weighted @ flat.T
-    gram[m, :m] = gram[:m, m] = weighted.sum(axis=1)
-    gram[m, m] = 1
-    moment[:m] = weighted @ labels.T
-    moment[m] = labels @ weights
-    return gram, moment
+def _solved(matrix: Features, wanted: Features) -> Features:
+    """The solution of ``matrix`` (n, n), symmetric and positive, times x = ``wanted`` (n, Q)."""
+    solved, votes = cv2.solve(matrix, wanted, flags=cv2.DECOMP_CHOLESKY)
+    # Rounding may make the least eigenvalues negative where the regularisation is tiny.
+    return np.asarray(votes if solved else np.linalg.solve(matrix, wanted))

@@ -2,8 +2,8 @@
 
 A one-dimensional correlation filter over the target at S sizes around the present one: the sizes
 are its "positions" (discriminative scale filter, after DSST: Danelljan et al., BMVC 2014). Its
-features are means of the channels over a grid of rectangles that grows with the size; all of them
-are read, with bilinear interpolation, from the frame's one set of integral images.
+features are means of the channels over a grid of rectangles that grows with the size, each px
+counted with the part of it that a rectangle covers.
 """
 
 from __future__ import annotations
@@ -17,8 +17,9 @@ from numpy.typing import NDArray
 from het_ros.tracking.subpixel import parabola_offset
 
 Floats = NDArray[np.float64]
-Complex = NDArray[np.complex128]
-Integrals = Sequence[NDArray[Any]]
+Features = NDArray[np.float32]
+Spectra = NDArray[np.complex64]
+Planes = Sequence[NDArray[Any]]
 
 _GRID = 8  # rectangles a side
 _RIDGE = 0.01  # regularisation over the mean energy
@@ -29,7 +30,7 @@ class ScaleFilter:
     """Finds the target's change of size and learns from where it was found.
 
     Args:
-        size: (w, h) of the target at the present size, px of the integral images.
+        size: (w, h) of the target at the present size, px of the channels.
         levels: S, number of sizes tried.
         step: ratio of one size to the next.
         context: how much more than the target is looked at.
@@ -48,92 +49,123 @@ class ScaleFilter:
         self._step = step
         self._learning_rate = learning_rate
         self._exponents = np.arange(levels) - (levels - 1) / 2
-        self._label: Complex = np.fft.fft(np.exp(-0.5 * (self._exponents / _LABEL_SIGMA) ** 2))
-        self._taper = np.hanning(levels + 2)[1:-1]
-        self._mean: Floats | None = None  # (d, 1)
-        self._weight: Floats = np.empty(0)  # (d, 1)
-        self._numerator: Complex = np.empty(0, complex)  # (d, S)
-        self._energy: Floats = np.empty(0)  # (S,)
+        self._label = np.fft.rfft(np.exp(-0.5 * (self._exponents / _LABEL_SIGMA) ** 2))
+        self._to_spectrum = _tapered_transform(levels)
+        self._mean: Features | None = None  # (d,)
+        self._weight: Features = np.empty(0, np.float32)  # (d,)
+        # Of the S frequencies of real features the first K = S // 2 + 1 say all.
+        self._numerator: Spectra = np.empty(0, np.complex64)  # (d, K)
+        self._energy: Floats = np.empty(0)  # (K,)
 
-    def change(self, integrals: Integrals, centre: Floats) -> float:
+    def change(self, planes: Planes, centre: Floats) -> float:
         """Ratio of the target's size in this frame to the present size.
 
         Args:
-            integrals: C integral images (H + 1, W + 1).
-            centre: (x, y) of the target, px of the integral images.
+            planes: C channels (H, W) uint8.
+            centre: (x, y) of the target, px of the channels.
         """
-        spectrum = np.fft.fft(self._features(integrals, centre, 1.0), axis=1)
-        energy = self._energy + _RIDGE * self._energy.mean()
-        response = np.fft.ifft((self._numerator * spectrum).sum(axis=0) / energy).real
+        spectrum = self._spectrum(planes, centre, 1.0)
+        levels = len(self._exponents)
+        energy = self._energy + _RIDGE * _mean_of_all(self._energy, levels)
+        response = np.fft.irfft((self._numerator * spectrum).sum(axis=0) / energy, levels)
         best = int(response.argmax())
         level = best + parabola_offset(response, best)
-        return float(self._step ** (level - (len(self._exponents) - 1) / 2))
+        return float(self._step ** (level - (levels - 1) / 2))
 
-    def learn(self, integrals: Integrals, centre: Floats, ratio: float) -> None:
+    def learn(self, planes: Planes, centre: Floats, ratio: float) -> None:
         """Learn the target at ``centre``, ``ratio`` times the present size; first call: outright.
 
         Args:
-            integrals: C integral images (H + 1, W + 1).
-            centre: (x, y) of the target, px of the integral images.
+            planes: C channels (H, W) uint8.
+            centre: (x, y) of the target, px of the channels.
             ratio: what :meth:`change` said, as far as it was followed.
         """
-        spectrum = np.fft.fft(self._features(integrals, centre, ratio), axis=1)
-        numerator = self._label * np.conj(spectrum)
-        energy = (np.abs(spectrum) ** 2).sum(axis=0)
+        spectrum = self._spectrum(planes, centre, ratio)
+        parts = spectrum.view(np.float32)
+        energy = np.einsum("dk,dk->k", parts, parts).reshape(-1, 2).sum(axis=1)
+        numerator = np.conj(spectrum) * self._label.astype(np.complex64)
         if not self._energy.size:
-            self._numerator, self._energy = numerator, energy
+            self._numerator, self._energy = numerator, energy.astype(np.float64)
             return
-        self._numerator += self._learning_rate * (numerator - self._numerator)
+        self._numerator *= 1 - self._learning_rate
+        self._numerator += self._learning_rate * numerator
         self._energy += self._learning_rate * (energy - self._energy)
 
-    def _features(self, integrals: Integrals, centre: Floats, ratio: float) -> Floats:
-        """(d, S): channel means over the grid at each size, centred, scaled and tapered."""
+    def _spectrum(self, planes: Planes, centre: Floats, ratio: float) -> Spectra:
+        """(d, K): channel means over the grid, centred and scaled, transformed over the sizes."""
         sides = ratio * self._step ** self._exponents[:, None] * self._size  # (S, 2)
-        features = grid_means(integrals, centre, sides, _GRID)
+        means = grid_means(planes, centre, sides, _GRID)  # (S, g, C, g)
+        features = means.reshape(len(sides), -1)
         if self._mean is None:
-            self._mean = features.mean(axis=1, keepdims=True)
-            deviation = features.reshape(len(integrals), -1).std(axis=1)
-            self._weight = 1 / (np.repeat(deviation, _GRID**2)[:, None] + 1)
-        return np.asarray((features - self._mean) * self._weight * self._taper)
+            self._mean = features.mean(axis=0)
+            deviation = means.std(axis=(0, 1, 3))  # (C,)
+            shape = means.shape[1:]
+            self._weight = np.broadcast_to(1 / (deviation[:, None] + 1), shape).reshape(-1).copy()
+        features -= self._mean
+        features *= self._weight
+        # What is real and what imaginary of a frequency lie next to each other.
+        return np.asarray((features.T @ self._to_spectrum).view(np.complex64))
 
 
-def grid_means(integrals: Integrals, centre: Floats, sides: Floats, grid: int) -> Floats:
+def _tapered_transform(levels: int) -> Features:
+    """(S, 2 K): Hann window and Fourier transform of S numbers, real and imaginary in turns."""
+    taper = np.hanning(levels + 2)[1:-1]
+    transform = np.fft.rfft(np.diag(taper), axis=1)  # (S, K)
+    return (
+        np.stack([transform.real, transform.imag], axis=2).reshape(levels, -1).astype(np.float32)
+    )
+
+
+def _mean_of_all(half: Floats, levels: int) -> float:
+    """Mean over all S frequencies of what is given (K,) for the first: the others mirror them."""
+    mirrored = half[1 : (levels + 1) // 2]
+    return float((half.sum() + mirrored.sum()) / levels)
+
+
+def grid_means(planes: Planes, centre: Floats, sides: Floats, grid: int) -> Features:
     """Means of channels over grids of rectangles of several sizes around one centre.
 
-    Interpolating an integral image between its columns and rows is linear, so all sizes are read
-    by two matrix products.
+    Which part of a px a rectangle covers is a product of a part in x and a part in y, so all
+    sizes are read by two matrix products.
 
     Args:
-        integrals: C integral images (H + 1, W + 1).
+        planes: C channels (H, W).
         centre: (x, y), px.
         sides: (S, 2), widths and heights of the grids, px; what lies outside counts as empty.
         grid: g, rectangles a side.
 
     Returns:
-        (C g g, S) float64.
+        (S, g, C, g) float32, the rectangles' rows in the second place, their columns in the last.
     """
-    stack = np.stack(integrals).astype(np.float64)
-    channels, height, width = stack.shape
-    sizes = len(sides)
+    height, width = planes[0].shape
+    sizes, channels = len(sides), len(planes)
     lines = np.linspace(-0.5, 0.5, grid + 1)
-    xs = np.clip(centre[0] + sides[:, :1] * lines, 0, width - 1)  # (S, g + 1)
-    ys = np.clip(centre[1] + sides[:, 1:] * lines, 0, height - 1)
-    # Differences of the narrow interpolation matrices, not of what they make of the stack.
-    down = np.diff(_interpolation(ys.ravel(), height).reshape(sizes, grid + 1, height), axis=1)
-    across = np.diff(_interpolation(xs.ravel(), width).reshape(sizes, grid + 1, width), axis=1)
-    rows = down.reshape(-1, height) @ stack.transpose(1, 0, 2).reshape(height, -1)
-    sums = rows.reshape(sizes, grid * channels, width) @ across.transpose(0, 2, 1)
-    areas = np.diff(ys)[:, :, None] * np.diff(xs)[:, None, :] + 1e-3  # (S, g, g)
-    means = sums.reshape(sizes, grid, channels, grid) / areas[:, :, None, :]
-    return np.asarray(means.transpose(2, 1, 3, 0).reshape(channels * grid * grid, sizes))
+    xs = np.minimum(np.maximum(centre[0] + sides[:, :1] * lines, 0), width)  # (S, g + 1)
+    ys = np.minimum(np.maximum(centre[1] + sides[:, 1:] * lines, 0), height)
+    columns, across = _coverage(xs, width)
+    rows, down = _coverage(ys, height)
+    stack = np.empty((rows.stop - rows.start, channels, columns.stop - columns.start), np.float32)
+    for channel, plane in enumerate(planes):
+        stack[:, channel] = plane[rows, columns]
+    strips = down.reshape(sizes * grid, -1) @ stack.reshape(len(stack), -1)
+    sums = strips.reshape(sizes, grid * channels, -1) @ across.transpose(0, 2, 1)
+    areas = (ys[:, 1:] - ys[:, :-1])[:, :, None] * (xs[:, 1:] - xs[:, :-1])[:, None, :] + 1e-3
+    means = sums.reshape(sizes, grid, channels, grid)
+    return np.asarray(means * (1 / areas).astype(np.float32)[:, :, None, :])
 
 
-def _interpolation(places: Floats, length: int) -> Floats:
-    """(K, length): row k interpolates linearly at places[k] in 0..length - 1."""
-    whole = np.minimum(places.astype(np.intp), length - 2)
-    part = places - whole
-    rows = np.arange(len(places))
-    weights = np.zeros((len(places), length))
-    weights[rows, whole] = 1 - part
-    weights[rows, whole + 1] = part
-    return weights
+def _coverage(lines: Floats, length: int) -> tuple[slice, Features]:
+    """Part of each px of an axis that lies between one line and the next.
+
+    Args:
+        lines: (S, g + 1), within 0..length.
+        length: of the axis, px.
+
+    Returns:
+        The range of px that is covered at all, one or more, and (S, g, px) for these.
+    """
+    first = min(int(lines.min()), length - 1)
+    last = max(first + 1, int(np.ceil(lines.max())))
+    before = lines[:, :, None] - np.arange(first, last)
+    np.minimum(np.maximum(before, 0, out=before), 1, out=before)
+    return slice(first, last), (before[:, 1:] - before[:, :-1]).astype(np.float32)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -68,12 +67,12 @@ class Frame:
 
     Attributes:
         window: the pixels, with its places counted in cells.
-        integrals: C integral images of the channels.
+        planes: C channels, (H, W) uint8.
         features: (m, rows, columns), maps of the compressive features.
     """
 
     window: Window
-    integrals: list[NDArray[Any]]
+    planes: tuple[Image, ...]
     features: Features
 
 
@@ -230,8 +229,8 @@ class Target:
             (float(scale[0]), float(scale[1])),
         )
         planes = channel_stack(window.pixels, self._channels, config.cell)
-        integrals = integral_images(planes)
-        return Frame(window.in_cells(config.cell), integrals, self._features.maps(integrals))
+        features = self._features.maps(integral_images(planes))
+        return Frame(window.in_cells(config.cell), planes, features)
 
     def _measure(self, frame: Frame) -> Measurement:
         """Bottom and middle layer."""
@@ -298,7 +297,7 @@ class Target:
         """Follow the target's change of size; returns the ratio to the size before."""
         if self._config.scales == 1:
             return 1.0
-        ratio = self._scale.change(frame.integrals, corner + np.array(self._cells) / 2)
+        ratio = self._scale.change(frame.planes, corner + np.array(self._cells) / 2)
         least = _SMALLEST_SIDE / float(self._first_size.min())
         growth = max(self._growth * ratio, min(self._growth, least))
         ratio, self._growth = growth / self._growth, growth
@@ -314,7 +313,7 @@ class Target:
             x, y = corner * config.cell
             self._colour.learn(frame.window.pixels, (float(x), float(y)))
         if config.scales > 1:
-            self._scale.learn(frame.integrals, corner + np.array(self._cells) / 2, ratio)
+            self._scale.learn(frame.planes, corner + np.array(self._cells) / 2, ratio)
 
     def _corner_in(self, window: Window) -> Floats:
         """The target's corner by the motion model, cells of the window."""

@@ -54,12 +54,13 @@ def test_matrix_is_its_generators():
     [((9, 13), (20, 25)), ((9, 13), (13, 9)), ((1, 1), (4, 5)), ((20, 3), (9, 21))],
     ids=str,
 )
-def test_maps_are_exact_sums(size, shape):
+@pytest.mark.parametrize("features", [4, 60])
+def test_maps_are_exact_sums(size, shape, features):
+    """With few rectangles and with many, which share sums over their heights."""
     planes = random_planes(shape)
-    matrix = draw(size=size, features=25)
+    matrix = draw(size=size, features=features)
     maps = raw_feature_maps(integral_images(planes), matrix)
-    assert maps.dtype == np.int32
-    assert maps.shape == (25, shape[0] - size[1] + 1, shape[1] - size[0] + 1)
+    assert maps.shape == (features, shape[0] - size[1] + 1, shape[1] - size[0] + 1)
     whole = [plane.astype(int) for plane in planes]
     for (x, y), values in all_features(whole, matrix.rows, size).items():
         assert maps[:, y, x].tolist() == values
@@ -73,13 +74,26 @@ def test_maps_of_channels_in_floats():
     np.testing.assert_allclose(maps[:, 2, 3] * 8, slow[3, 2], rtol=1e-9)
 
 
-def test_buffer_is_used_again_and_leaves_no_trace():
+def test_buffers_are_used_again_and_leave_no_trace():
     matrix = draw(features=25)
-    first = raw_feature_maps(integral_images(random_planes(seed=1)), matrix)
-    fresh = raw_feature_maps(integral_images(random_planes(seed=2)), matrix)
-    again = raw_feature_maps(integral_images(random_planes(seed=2)), matrix, first.base)
-    assert np.shares_memory(first, again)
-    np.testing.assert_array_equal(again, fresh)
+    features = CompressiveFeatures(matrix)
+    first, second = (integral_images(random_planes(seed=seed)) for seed in (1, 2))
+    maps = features.maps(first)
+    before = maps.copy()
+    assert features.maps(second) is maps
+    assert not np.allclose(maps, before)
+    np.testing.assert_array_equal(features.maps(first), before)
+
+
+@pytest.mark.parametrize("side", [200, 400])
+def test_sums_of_large_white_windows_are_exact(side):
+    """Beyond 2^24 not all whole numbers fit into float32."""
+    white = [np.full((side, side), 255, np.uint8)]
+    matrix = draw(size=(90, 60), channels=1, features=12)
+    maps = raw_feature_maps(integral_images(white), matrix)
+    for feature, row in zip(maps, matrix.rows, strict=True):
+        wanted = sum(255 * r.sign * (r.x1 - r.x0) * (r.y1 - r.y0) for r in row)
+        np.testing.assert_array_equal(feature, wanted)
 
 
 def test_first_maps_are_standardised_and_fix_the_scale():
