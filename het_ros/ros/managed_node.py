@@ -4,8 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from contextlib import ExitStack
+from functools import partial
 from typing import Any
 
+from lifecycle_msgs.srv import ChangeState
 from rclpy.lifecycle import LifecycleNode, LifecycleState, TransitionCallbackReturn
 
 
@@ -30,6 +32,7 @@ class ManagedNode(LifecycleNode):
         self.configured = ExitStack()
         self.activated = ExitStack()
         self._failure: Exception | None = None
+        self._guard_transitions()
 
     def configure(self) -> None:
         """Make what lasts until the node is cleaned up."""
@@ -74,6 +77,28 @@ class ManagedNode(LifecycleNode):
         """Undo what was made, then destroy the node."""
         self._undo()
         super().destroy_node()
+
+    def _guard_transitions(self) -> None:
+        """Let the service ``~/change_state`` refuse a transition that the state does not have.
+
+        rclpy 7.1 raises there instead, which ends the executor and with it the process.
+        """
+        for service in self.services:
+            if service.srv_type is ChangeState:
+                service.callback = partial(self._changed_state, service.callback)
+
+    def _changed_state(
+        self,
+        change: Callable[..., ChangeState.Response],
+        request: ChangeState.Request,
+        response: ChangeState.Response,
+    ) -> ChangeState.Response:
+        try:
+            return change(request, response)
+        except Exception as error:  # RCLError lies in a private module
+            self.get_logger().warning(f"transition {request.transition.id} refused: {error}")
+            response.success = False
+            return response
 
     def _undo(self) -> None:
         self.activated.close()

@@ -70,3 +70,14 @@ def test_a_shutdown_takes_everything_away(graph):
     node.trigger_shutdown()
     assert not [s for s in node.subscriptions if s.topic_name.startswith("/image")]
     assert not [p for p in node.publishers if p.topic_name.startswith("/tracker/box")]
+
+
+@pytest.mark.parametrize("transition", [1, 2, 3, 77, 255])
+def test_a_transition_that_its_state_does_not_have_is_refused(graph, transition):
+    """rclpy's own service raised out of the executor: one call from anywhere ended the process."""
+    graph.add(TrackerNode(context=graph.context))
+    manager = graph.add(Node("manager", context=graph.context))
+    request = ChangeState.Request(transition=Transition(id=transition))
+    assert not called(graph, manager, ChangeState, "change_state", request).success
+    answer = called(graph, manager, GetState, "get_state", GetState.Request())
+    assert answer.current_state.id == State.PRIMARY_STATE_ACTIVE
