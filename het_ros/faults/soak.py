@@ -121,7 +121,7 @@ def _watched(
 ) -> list[dict[str, Any]]:
     stretch = max(seconds / STRETCHES, LEAST_STRETCH)
     rows: list[dict[str, Any]] = []
-    camera.take_stretch()
+    camera.begin()
     begun = due = time.monotonic()
     before = look(tracker.pid)
     with tqdm(total=round(seconds), desc="soak", unit="s", mininterval=5) as progress:
@@ -227,12 +227,13 @@ def told(result: dict[str, Any]) -> list[str]:
     lines = [
         f"{f['seconds'] / 60:.1f} minutes at {f['rate']:.1f} frames/s, {f['sent']} sent, "
         f"{f['answered_share']:.1%} answered, {f['boxes']} boxes",
-        f"memory    {f['rss_mb'][0]:.1f} to {f['rss_mb'][1]:.1f} MB ({f['rss_growth']:+.2%})",
+        f"memory    {f['rss_mb'][0]:.1f} to {f['rss_mb'][1]:.1f} MB ({f['rss_growth']:+.2%}), "
+        f"its own {f['own_mb'][0]:.1f} to {f['own_mb'][1]:.1f} MB ({f['own_growth']:+.2%})",
         f"latency   p99 {f['p99_ms'][0]:.1f} to {f['p99_ms'][1]:.1f} ms "
         f"({f['p99_drift']:+.1%}; {f['p99_drift_relative']:+.1%} relative to the machine)",
         f"files     {f['files'][0]} to {f['files'][1]}, threads {f['threads']}",
         f"states    TRACKING {f['tracking']}, COASTING {f['coasting']}, LOST {f['lost']}; "
-        f"{f['right_share']:.1%} of visible frames with an overlap over 0.5",
+        f"{f['right_share']:.1%} of visible frames on the target",
         f"load      {f['load_median']:.1f} (median), {f['load_max']:.1f} (most)",
     ]
     lines += [f"{'met ' if c['met'] else 'MISSED'}    {c['what']}" for c in result["checks"]]

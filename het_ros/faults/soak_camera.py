@@ -24,7 +24,6 @@ QOS = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)  # what cam
 FIRST_STAMP = 1000 * 10**9  # ns
 KEPT = 200  # frames whose answers are waited for
 SEEN = 0.5  # visible part from which on the target counts as visible
-ON_TARGET = 0.5  # overlap from which on a box is right
 TELLING = ("processed", "duplicate", "late", "unreadable", "skipped", "dropped")
 
 
@@ -40,7 +39,8 @@ class Stretch:
         trips: s from publishing a frame until its status was here.
         probe: s that decoding the same frames took this process: how fast the machine was.
         visible: frames with the target visible and answered.
-        right: those of them with an overlap over 0.5.
+        right: those of them whose box has its centre in the target's. (Strides change the width of
+            a walker's true box by half: overlap would say little.)
         silence: the longest time between two statuses, s.
     """
 
@@ -101,6 +101,11 @@ class SoakCamera(Node):
         return all(self.count_publishers(s.topic_name) > 0 for s in self._inputs) and all(
             publisher.get_subscription_count() > 0 for publisher in (self._images, self._boxes)
         )
+
+    def begin(self) -> None:
+        """Count from now on."""
+        self._heard = time.monotonic()
+        self.stretch = Stretch()
 
     def publish(self) -> None:
         """Send the next frame, and a box when it is time for one."""
@@ -165,8 +170,12 @@ class SoakCamera(Node):
         if shot.box is not None and shot.visible >= SEEN:
             self.stretch.visible += 1
             found = self._found.get(stamp)
-            self.stretch.right += int(found is not None and found.iou(shot.box) > ON_TARGET)
+            self.stretch.right += int(found is not None and _holds(shot.box, found.centre))
 
     def _on_diagnostics(self, message: DiagnosticArray) -> None:
         values = status_values(message)
         self.counts = {name: int(values[name]) for name in TELLING if name in values}
+
+
+def _holds(box: Box, point: tuple[float, float]) -> bool:
+    return bool(box.x <= point[0] < box.x + box.w and box.y <= point[1] < box.y + box.h)

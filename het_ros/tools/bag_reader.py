@@ -70,8 +70,8 @@ class BagReader:
         image_topic: topic of the images; empty when there are none.
 
     Raises:
-        BagError: there is no bag at ``path``, it is broken or was cut off, leads out of its folder, or has
-            several image topics.
+        BagError: there is no bag at ``path``, it is broken or was cut off, leads out of its
+            folder, or has several image topics.
     """
 
     def __init__(self, path: Path | str, image_topic: str | None = None) -> None:

@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+import os
+
 import pytest
+from conftest import EXECUTABLES, Graph
 
 from het_ros.tools.footage import open_footage
 from het_ros.tools.make_bag import make_bag
+from het_ros.tools.tracker_process import TrackerProcess, free_domain
 
 
 @pytest.fixture(scope="session")
@@ -14,3 +18,32 @@ def crossing_bag(sequences, tmp_path_factory):
     path = tmp_path_factory.mktemp("bags") / "crossing"
     make_bag(open_footage(sequences / "Crossing"), path)
     return path
+
+
+@pytest.fixture(scope="module")
+def tracker_of_the_module(tmp_path_factory):
+    """``tracker_of_the_module(*arguments)``: one installed tracker for all tests of a file.
+
+    Gives a :class:`Graph` that sees it and its log; at the end it must still run.
+    """
+    if not (EXECUTABLES / "tracker").exists():
+        pytest.skip("nothing installed: run `make build`, and source install/setup.bash")
+    log = tmp_path_factory.mktemp("tracker") / "log.txt"
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setitem(os.environ, "ROS_AUTOMATIC_DISCOVERY_RANGE", "LOCALHOST")
+        patch.setitem(os.environ, "ROS_DOMAIN_ID", str(free_domain()))
+        patch.setitem(os.environ, "ROS_LOG_DIR", str(log.parent))
+        opened = []
+
+        def start(*arguments: str):
+            opened.append(TrackerProcess(EXECUTABLES / "tracker", arguments, log))
+            opened.append(Graph())
+            return opened[1], log
+
+        yield start
+        if opened:
+            tracker, graph = opened
+            graph.close()
+            with tracker:
+                tracker.check()
+            assert "Traceback" not in log.read_text()
