@@ -13,9 +13,11 @@ from pathlib import Path
 
 import numpy as np
 import rclpy
+from geometry_msgs.msg import PolygonStamped
 from rclpy.node import Node
 from rclpy.qos import QoSProfile, ReliabilityPolicy
 from rclpy.signals import SignalHandlerOptions
+from std_msgs.msg import Header
 
 from het_ros.faults.disturb import (
     SECOND,
@@ -28,6 +30,7 @@ from het_ros.faults.disturb import (
     steady,
     swap,
 )
+from het_ros.ros.messages import polygon_from_box
 from het_ros.tools.bag_reader import BagError, BagReader
 from het_ros.tools.interrupt import StopRequest
 from het_ros.tools.message_types import message_class
@@ -35,6 +38,7 @@ from het_ros.tools.transport import use_profile
 
 STAMP_AT = 4  # byte of a CDR message that begins with a header
 QOS = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
+BOX_EVERY = 30  # frames
 WAIT = 10.0  # s for somebody to listen
 
 EXAMPLE = """examples, with a tracker that runs with -p image_transport:=compressed:
@@ -49,10 +53,13 @@ class FaultyCamera(Node):
 
     Args:
         bag: its images are kept in memory as they lie in the bag.
+        boxes: topic to send the bag's true boxes to, one a second; "" for none.
     """
 
-    def __init__(self, bag: BagReader) -> None:
+    def __init__(self, bag: BagReader, boxes: str = "") -> None:
         super().__init__("faulty_camera")
+        self._truth = list(bag.truth().values()) if boxes else []
+        self._boxes = self.create_publisher(PolygonStamped, boxes, 10) if boxes else None
         self._images = [recorded.cdr for recorded in bag.recorded(bag.image_topic)]
         kind = message_class(bag.topics[bag.image_topic])
         self._publisher = self.create_publisher(kind, bag.image_topic, QOS)
@@ -67,10 +74,15 @@ class FaultyCamera(Node):
 
     def publish(self, delivery: Delivery) -> None:
         """Send one image; after the last the first comes again."""
-        cdr = self._images[delivery.frame % len(self._images)]
+        index = delivery.frame % len(self._images)
+        cdr = self._images[index]
         seconds, rest = divmod(delivery.stamp, SECOND)
         stamp = seconds.to_bytes(4, "little", signed=True) + rest.to_bytes(4, "little")
         self._publisher.publish(cdr[:STAMP_AT] + stamp + cdr[STAMP_AT + 8 :])
+        if self._boxes and delivery.frame % BOX_EVERY == 0 and index < len(self._truth):
+            header = Header()
+            header.stamp.sec, header.stamp.nanosec = seconds, rest
+            self._boxes.publish(polygon_from_box(self._truth[index], header))
 
 
 def play(camera: FaultyCamera, stream: Sequence[Delivery], stop: StopRequest) -> int:
@@ -119,6 +131,7 @@ def _parse(argv: Sequence[str]) -> argparse.Namespace:
     p.add_argument("--freeze", default="", help="FIRST,LAST: frames with one and the same stamp")
     p.add_argument("--jump", default="", help="FRAME,SECONDS: the clock is set there")
     p.add_argument("--first-stamp", type=float, default=0.0, help="s (0: the time of day)")
+    p.add_argument("--boxes", default="", help="topic for the bag's true boxes, one a second")
     p.add_argument("--seed", type=int, default=0, help="of what is drawn (0)")
     p.add_argument("--wait", type=float, default=WAIT, help=f"s for a listener ({WAIT:g})")
     return p.parse_args(argv)
@@ -136,7 +149,7 @@ def main(argv: Sequence[str] | None = None) -> int:
                 raise BagError(f"{options.bag} has no images")
             rclpy.init(args=arguments[cut:], signal_handler_options=SignalHandlerOptions.NO)
             try:
-                return _run(FaultyCamera(bag), options, stop)
+                return _run(FaultyCamera(bag, options.boxes), options, stop)
             finally:
                 rclpy.try_shutdown()
     except (OSError, ValueError) as error:

@@ -74,8 +74,13 @@ class ImageStream:
             text = explain_silence(self._node, self._subscription, self._timeout)
             self._hints.once("silence", text)
 
+    @property
+    def topic(self) -> str:
+        """Where images are looked for."""
+        return self._node.resolve_topic_name("image") + self._suffix
+
     def _subscribe(self) -> None:
-        topic = self._node.resolve_topic_name("image") + self._suffix
+        topic = self.topic
         self._subscription = self._node.create_subscription(
             self._kind,
             topic,

@@ -132,6 +132,8 @@ class TrackerNode(ManagedNode):
         self._subscribe(Image, "depth", self.space.on_depth, NEWEST_ONLY)
         self._active = True
         self.activated.callback(setattr, self, "_active", False)
+        box_topic = self.resolve_topic_name("~/init_box")
+        self.get_logger().info(f"active: images from {self.images.topic}, boxes on {box_topic}")
 
     def _kinds(self) -> dict[str, type]:
         """Message type of each output."""
