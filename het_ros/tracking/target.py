@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -32,6 +33,7 @@ from het_ros.tracking.window import Window, cut_window
 
 Image = NDArray[np.uint8]
 Floats = NDArray[np.float64]
+Witness = Callable[[Box], bool]
 
 # A rival is a place of the target at least this part of its side away from the best one.
 _RIVAL_APART = 0.35
@@ -155,24 +157,26 @@ class Target:
         frame = self._look(image, self._seen_at)
         self._learn(frame, self._corner_in(frame.window), np.ones(config.sub_patches, bool), 1.0)
 
-    def follow(self, image: Image, dt: float) -> Estimate:
+    def follow(self, image: Image, dt: float, witness: Witness | None = None) -> Estimate:
         """One frame: predict, detect, combine, judge, correct, update the model.
 
         Args:
             image: (H, W, 3) or (H, W) uint8.
             dt: time since the last frame, s.
+            witness: see :meth:`HierarchicalEnsembleTracker.update`.
         """
         self._motion.predict(dt)
         was_hidden = self._trust is not None and self._trust.hidden_frames > 0
         frame = self._look(image, self._search_centre())
         found = self._measure(frame)
+        centre = frame.window.to_image(found.corner + np.array(self._cells) / 2)
         verdict = Verdict.SEEN
         if self._trust and found.evidence:
-            verdict = self._trust.judge(found.evidence, self._motion.step(dt))
+            witnessed = witness is None or witness(self._box_at(centre))
+            verdict = self._trust.judge(found.evidence, self._motion.step(dt), witnessed)
         if verdict is Verdict.HIDDEN:
             self._motion.coast()
         else:
-            centre = frame.window.to_image(found.corner + np.array(self._cells) / 2)
             if was_hidden:
                 self._motion.restart(centre)
             else:
@@ -188,9 +192,12 @@ class Target:
     @property
     def box(self) -> Box:
         """The target's box by the motion model, px."""
-        cx, cy = self._motion.centre
+        return self._box_at(self._motion.centre)
+
+    def _box_at(self, centre: Floats) -> Box:
+        """A box of the target's size, px."""
         width, height = self._first_size * self._growth
-        return Box.from_centre(float(cx), float(cy), float(width), float(height))
+        return Box.from_centre(float(centre[0]), float(centre[1]), float(width), float(height))
 
     def estimate(self, score: float, state: State, patches: tuple[Patch, ...] = ()) -> Estimate:
         """What the motion model holds, as an estimate."""

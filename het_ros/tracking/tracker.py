@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from het_ros.tracking.box import Box
 from het_ros.tracking.config import TrackerConfig
 from het_ros.tracking.estimate import Estimate, State
-from het_ros.tracking.target import Target
+from het_ros.tracking.target import Target, Witness
 
 Image = NDArray[np.uint8]
 
@@ -64,7 +64,7 @@ class HierarchicalEnsembleTracker:
         self._state = State.TRACKING
         return self._target.estimate(1.0, State.TRACKING)
 
-    def update(self, image: Image, dt: float) -> Estimate:
+    def update(self, image: Image, dt: float, witness: Witness | None = None) -> Estimate:
         """Find the target in the next image.
 
         A target that is not seen is COASTING and after ``lost_after`` s LOST, until it is seen
@@ -75,6 +75,9 @@ class HierarchicalEnsembleTracker:
             image: (H, W, 3) uint8 BGR or (H, W) uint8; size and kind may differ from the last.
             dt: time since the last image, s. Where it is not positive the configuration's
                 ``nominal_dt`` is taken.
+            witness: another sensor, for example of depth. Asked once a frame whether the target
+                may be in the box where it was found; where it says no, the target counts as
+                hidden, and nothing is learnt. Not asked without ``trust``.
 
         Returns:
             The estimate of this frame.
@@ -90,7 +93,7 @@ class HierarchicalEnsembleTracker:
             raise RuntimeError("there is no target to update: call init first")
         if self._state is State.LOST and not self.config.trust:
             return self._target.estimate(0.0, State.LOST)
-        estimate = self._target.follow(image, dt)
+        estimate = self._target.follow(image, dt, witness)
         self._state = estimate.state
         return estimate
 

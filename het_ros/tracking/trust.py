@@ -80,12 +80,13 @@ class Trust:
         self.score = 1.0
         self.hidden_frames = 0
 
-    def judge(self, evidence: Evidence, dt: float) -> Verdict:
+    def judge(self, evidence: Evidence, dt: float, witnessed: bool = True) -> Verdict:
         """Judge one frame; sets ``state`` and ``score``.
 
         Args:
             evidence: of the best place of this frame.
             dt: time since the last frame, s.
+            witnessed: False where another sensor sees something else there.
         """
         self._frames += 1
         if self._colour is None:
@@ -94,7 +95,7 @@ class Trust:
         # Without a colour model the colours neither speak for a place nor against it.
         colour = evidence.colour / self._colour if self._colour else 1.0
         rival = min(max(evidence.rival, 0.0) / max(evidence.template, 1e-6), _ANY_RIVAL)
-        verdict = self._verdict(template, colour, rival)
+        verdict = self._verdict(template, colour, rival) if witnessed else Verdict.HIDDEN
         self._doubted_for = self._doubted_for + dt if verdict is Verdict.DOUBTED else 0.0
         if self._doubted_for > _LONGEST_DOUBT:
             verdict = Verdict.HIDDEN

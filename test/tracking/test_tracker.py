@@ -87,6 +87,19 @@ def test_velocity_is_in_pixels_a_second(noise):
     np.testing.assert_allclose(estimate.velocity, [20, 0], atol=4)
 
 
+def test_what_a_witness_denies_is_hidden_and_not_learnt(noise):
+    tracker = started(noise, Box(60, 40, 21, 33), TrackerConfig())
+    asked = []
+    for _ in range(5):
+        estimate = tracker.update(noise, DT, witness=lambda box: bool(asked.append(box)))
+        assert estimate.state is State.COASTING
+        assert estimate.score <= 0.5
+    assert len(asked) == 5
+    assert asked[0].iou(Box(60, 40, 21, 33)) > 0.9  # asked of what was found in the image
+    estimate = tracker.update(noise, DT, witness=lambda box: True)
+    assert estimate.state is State.TRACKING
+
+
 def test_nothing_to_see_leaves_the_box_where_it_is():
     flat = np.full((120, 160, 3), 77, np.uint8)
     tracker = started(flat, Box(60, 40, 20, 30))
