@@ -145,7 +145,9 @@ class NaiveBayes:
         self._least_variance = sigma_floor**2
         self._positive: Gaussians | None = None
         self._negative: Gaussians | None = None
-        self._squares = np.empty((0, 0))
+        # Buffers used again: of all places, and of those that samples are taken from.
+        self._squares: Features = np.empty((0, 0))
+        self._powers: Features = np.empty(0)
 
     def score_maps(self, features: Features) -> Features:
         """F(l) = sum of f(l_i) (eq. strongClassifier) of every sub-patch at every place.
@@ -236,7 +238,13 @@ class NaiveBayes:
         distances = 4 * squared_distances(corners / 2, coarse.shape[1:])
         farthest = distances.max(axis=(1, 2), keepdims=True)
         negative = distances >= np.minimum(self._negative_radius**2, farthest)
-        return sample_gaussians(near, positive), sample_gaussians(coarse, negative)
+        size = 2 * max(near.size, coarse.size)
+        if self._powers.size < size or self._powers.dtype != features.dtype:
+            self._powers = np.empty(size, features.dtype)
+        return (
+            sample_gaussians(near, positive, self._powers),
+            sample_gaussians(coarse, negative, self._powers),
+        )
 
     def _squared(self, flat: Features) -> Features:
         """The features (m, places) squared, in a buffer used again."""
@@ -245,16 +253,23 @@ class NaiveBayes:
         return np.multiply(flat, flat, out=self._squares)
 
 
-def sample_gaussians(features: Features, samples: NDArray[np.bool_]) -> Gaussians:
-    """Mean and variance of each sub-patch's samples, by two matrix products.
+def sample_gaussians(
+    features: Features, samples: NDArray[np.bool_], buffer: Features | None = None
+) -> Gaussians:
+    """Mean and variance of each sub-patch's samples, by one matrix product.
 
     Args:
         features: (m, rows, columns), standardised.
         samples: (Q, rows, columns), which places are samples of which sub-patch; one at least.
+        buffer: of the features' dtype, for twice as many numbers; it is overwritten.
     """
-    flat = features.reshape(len(features), -1)
+    if buffer is None:
+        buffer = np.empty(2 * features.size, features.dtype)
+    powers = buffer[: 2 * features.size].reshape(2, *features.shape)
+    powers[0] = features
+    np.multiply(powers[0], powers[0], out=powers[1])
     chosen = samples.reshape(len(samples), -1)
-    share = (chosen / chosen.sum(axis=1, keepdims=True)).astype(flat.dtype)
-    mean = (share @ flat.T).astype(np.float64)
-    square = (share @ (flat * flat).T).astype(np.float64)
+    share = (chosen / chosen.sum(axis=1, keepdims=True)).astype(features.dtype)
+    moments = (share @ powers.reshape(2 * len(features), -1).T).astype(np.float64)
+    mean, square = np.split(moments, 2, axis=1)
     return Gaussians(mean, np.maximum(square - mean**2, 0))

@@ -23,7 +23,9 @@ class Box:
     h: float
 
     def __post_init__(self) -> None:
-        if not all(math.isfinite(v) for v in (self.x, self.y, self.w, self.h)):
+        # Not in a loop: a frame makes a box for each sub-patch.
+        finite = math.isfinite(self.x) and math.isfinite(self.y)
+        if not (finite and math.isfinite(self.w) and math.isfinite(self.h)):
             raise ValueError(f"a box needs finite numbers, not {self}: send x, y, w, h in px")
         if self.w <= 0 or self.h <= 0:
             raise ValueError(f"a box needs a positive width and height, not {self.w} x {self.h}")

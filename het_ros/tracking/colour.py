@@ -34,13 +34,15 @@ class ColourModel:
         self._learning_rate = learning_rate
         self._target: Plane | None = None
         self._around: Plane = np.empty(0, np.float32)
+        self._pixels: NDArray[np.uint8] | None = None
+        self._bins: NDArray[np.intp] = np.empty(0, np.intp)
 
     def likelihood(self, pixels: NDArray[np.uint8]) -> Plane:
         """Probability (H, W) float32 that a pixel is the target's, by its colour alone."""
         if self._target is None:
             raise RuntimeError("the colour model knows no target yet: call learn first")
         table = (self._target + _EMPTY) / (self._target + self._around + _EMPTY / _STRANGE)
-        return np.asarray(table[colour_bins(pixels)], np.float32)
+        return np.asarray(table[self._bins_of(pixels)], np.float32)
 
     def learn(self, pixels: NDArray[np.uint8], corner: Corner) -> None:
         """Blend in the colours of a window with the target's corner at ``corner``, window px.
@@ -51,7 +53,7 @@ class ColourModel:
             pixels: (H, W, 3) uint8 BGR or (H, W) uint8.
             corner: (x, y) of the target, window px.
         """
-        bins = colour_bins(pixels)
+        bins = self._bins_of(pixels)
         width, height = self._size
         ring = round(_RING * (width + height) / 2)
         margin = (1 - _CORE) / 2
@@ -67,13 +69,25 @@ class ColourModel:
             self._target += self._learning_rate * (target - self._target)
             self._around += self._learning_rate * (around - self._around)
 
+    def _bins_of(self, pixels: NDArray[np.uint8]) -> NDArray[np.intp]:
+        """Bins of a window, which is asked for them once to judge and once to learn."""
+        if pixels is not self._pixels:
+            self._pixels, self._bins = pixels, colour_bins(pixels)
+        return self._bins
+
 
 def colour_bins(pixels: NDArray[np.uint8]) -> NDArray[np.intp]:
     """Bin (H, W) of each pixel's colour, below 4096."""
-    levels = (pixels >> (8 - _BITS)).astype(np.intp)
     if pixels.ndim == 2:
-        return levels
-    return (levels[..., 0] << 2 * _BITS) | (levels[..., 1] << _BITS) | levels[..., 2]
+        return (pixels >> (8 - _BITS)).astype(np.intp)
+    # The upper bits of each channel where they belong, in as few and as narrow passes as can be.
+    upper = np.uint8(256 - (1 << 8 - _BITS))
+    first = (pixels[..., 0] & upper).astype(np.uint16)
+    first <<= np.uint16(3 * _BITS - 8)
+    first |= (pixels[..., 1] & upper) >> np.uint8(8 - 2 * _BITS) | pixels[..., 2] >> np.uint8(
+        8 - _BITS
+    )
+    return np.asarray(first, np.intp)
 
 
 def cell_means(likelihood: Plane, cell: int) -> Plane:

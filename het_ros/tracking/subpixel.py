@@ -17,6 +17,6 @@ def parabola_offset(values: NDArray[np.floating[Any]], peak: int) -> float:
     """
     if not 0 < peak < len(values) - 1:
         return 0.0
-    left, top, right = (float(values[peak + k]) for k in (-1, 0, 1))
+    left, top, right = values[peak - 1 : peak + 2].tolist()
     bend = left - 2 * top + right
-    return float(np.clip(0.5 * (left - right) / bend, -0.5, 0.5)) if bend < 0 else 0.0
+    return float(min(max(0.5 * (left - right) / bend, -0.5), 0.5)) if bend < 0 else 0.0
