@@ -179,18 +179,20 @@ def follow_walk(rng: np.random.Generator) -> Story:
 
 
 def patrol(rng: np.random.Generator) -> Story:
-    """A minute up and down the promenade, behind a column near its far side, and a passer-by.
+    """A minute up and down the promenade, behind a column at each turn, and a passer-by.
 
-    Made for a robot that steers the camera: it can keep 4 m away without meeting the column.
+    Made for a robot that steers the camera: seen from straight ahead the column hides the figure
+    for half a second, from aside for more than one, and a robot that keeps 4 m away from the
+    figure never comes within half a metre of the column.
     """
-    z = rng.uniform(6.1, 6.4)
-    turns = (-3.0, 5.5, -5.5, 5.5, -5.5, 0.0)
-    target, t = [(-1.5, turns[0] - 1.3, z)], 0.0
+    z, speed = rng.uniform(6.1, 6.4), 0.85
+    turns = (-3.0, 4.0, -4.0, 4.0, -4.0, 4.0, -4.0)
+    target, t = [(-1.5, turns[0] - 1.5 * speed, z)], 0.0
     for begin, end in pairwise(turns):
-        t += abs(end - begin) / 0.85
+        t += abs(end - begin) / speed
         target += [(t, end, z), (t + 1.2, end, z + rng.uniform(-0.1, 0.1))]
         t += 1.2
-    column = Column(0.6, 5.1, (0.7 * 0.85 + STEP_WIDTH) * 0.75)
+    column = Column(0.3, z - 0.75, (0.5 * speed + STEP_WIDTH) * (z - 0.75) / z)
     other = ((12.0, 9.0, 7.4), (34.0, -9.0, 7.4), (36.0, -9.0, 7.5), (60.0, 9.0, 7.5))
     return Story(60.0, tuple(target), (Passer(other),), (column,))
 
