@@ -328,11 +328,11 @@ class Target:
 
     def _patches(self, window: Window, found: Measurement) -> tuple[Patch, ...]:
         """The sub-patches where they were found, in image px."""
-        width, height = np.array(self._sub_patches.size) / np.array(window.scale)
-        corners = window.to_image(found.patch_corners)
+        width, height = (np.array(self._sub_patches.size) / np.array(window.scale)).tolist()
+        corners = window.to_image(found.patch_corners).tolist()
         return tuple(
-            Patch(Box(float(x), float(y), float(width), float(height)), float(weight))
-            for (x, y), weight in zip(corners, found.omega, strict=True)
+            Patch(Box(x, y, width, height), weight)
+            for (x, y), weight in zip(corners, found.omega.tolist(), strict=True)
         )
 
 
