@@ -47,7 +47,7 @@ class Health:
         elif state == "LOST":
             level, text = DiagnosticStatus.WARN, f"the target is LOST, {rate:.1f} frames/s"
         values = {"state": state, "rate_hz": f"{rate:.2f}"}
-        for key in ("processed", "duplicate", "late", "unreadable", "skipped"):
+        for key in ("processed", "duplicate", "late", "unreadable", "skipped", "dropped"):
             values[key] = str(counts[key])
         for percent in (50, 95, 99):
             part = np.percentile(self._latencies, percent) if self._latencies else 0.0

@@ -6,6 +6,7 @@ import time
 from collections.abc import Callable
 from contextlib import ExitStack
 from copy import copy
+from typing import Any
 
 from rclpy.clock import Clock, ClockType
 from rclpy.node import Node
@@ -16,6 +17,7 @@ from std_msgs.msg import Header
 
 from het_ros.ros.frames import Conversion, Frame, ImageMessage
 from het_ros.ros.hints import Hints
+from het_ros.ros.losses import Losses
 from het_ros.ros.messages import stamp_ns
 from het_ros.ros.quality import explain_silence, subscription_events
 
@@ -43,6 +45,7 @@ class ImageStream:
         self._looking: list[Look] = []
         self._open = ExitStack()
         self._came = False
+        self._losses = Losses(lambda: int(self._subscription.get_publisher_count()))
 
     def join(self, look: Look) -> None:
         """Call ``look`` with every frame from now on."""
@@ -67,6 +70,15 @@ class ImageStream:
         if shared is not None:
             shared.close()
 
+    def _on_message(self, message: ImageMessage, info: dict[str, Any]) -> None:
+        self._losses.take(info.get("publication_sequence_number"))
+        self.take(message)
+
+    @property
+    def dropped(self) -> int:
+        """Images that were published and never came: lost, or replaced by newer ones."""
+        return self._losses.count
+
     def on_silence(self) -> None:
         """Once after the start: if no image came, say what is waited for."""
         self._silence.cancel()
@@ -76,15 +88,15 @@ class ImageStream:
 
     @property
     def topic(self) -> str:
-        """Where images are looked for."""
-        return self._node.resolve_topic_name("image") + self._suffix
+        """Where images are taken from, while anybody looks."""
+        return str(self._subscription.topic_name)
 
     def _subscribe(self) -> None:
-        topic = self.topic
+        topic = self._node.resolve_topic_name("image") + self._suffix
         self._subscription = self._node.create_subscription(
             self._kind,
             topic,
-            self.take,
+            self._on_message,
             copy(NEWEST_ONLY),  # overrides are written into it
             event_callbacks=subscription_events(self._node, topic),
             qos_overriding_options=QoSOverridingOptions.with_default_policies(),

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Callable
 from copy import copy
 from typing import Any
@@ -23,7 +24,6 @@ from het_ros.ros.hints import Hints
 from het_ros.ros.image_stream import NEWEST_ONLY, ImageStream
 from het_ros.ros.managed_node import ManagedNode
 from het_ros.ros.messages import BoxError, box_from_polygon, box_from_roi, stamp_ns
-from het_ros.ros.outcome import Outcome
 from het_ros.ros.outputs import OUTPUTS, RELIABLE, Outputs, Tap
 from het_ros.ros.parameters import NodeConfig, declare, read
 from het_ros.ros.pursuit import Pursuit
@@ -72,8 +72,8 @@ class TrackerNode(ManagedNode):
         declare(self, NodeConfig())
         declare(self, config or TrackerConfig())
         self._settings = read(self, NodeConfig)
-        self._pursuit = self._new_pursuit()
         self.space = Space(self._settings, self._hints)
+        self._pursuit = self._new_pursuit()
         self.images = self._new_images() if source is None else source.images
         self._active = False
         self._enabled = True
@@ -98,6 +98,7 @@ class TrackerNode(ManagedNode):
 
     def configure(self) -> None:
         """Make outputs and services, on a stream that nothing is known of."""
+        self.space.forget()
         self._pursuit = self._new_pursuit()
         self.configured.callback(lambda: self._pursuit.drop("waiting for a box"))
         self._outputs = Outputs(self, self._kinds(), self._tap)
@@ -143,7 +144,8 @@ class TrackerNode(ManagedNode):
         return {**OUTPUTS, "detections": vision_msgs.Detection2DArray}
 
     def _new_pursuit(self) -> Pursuit:
-        return Pursuit(read(self, TrackerConfig), self._settings, self.get_logger())
+        witness = self.space.may_hold
+        return Pursuit(read(self, TrackerConfig), self._settings, self.get_logger(), witness)
 
     def _new_images(self) -> ImageStream:
         compressed = self._settings.image_transport == "compressed"
@@ -196,7 +198,7 @@ class TrackerNode(ManagedNode):
             self._pursuit.refuse(error)
             return
         if outcome is not None and outcome.published:
-            self._answer(outcome)
+            self._answers.publish(outcome)
         if self._pursuit.busy:
             self._work()
 
@@ -206,21 +208,11 @@ class TrackerNode(ManagedNode):
         while self._pursuit.busy:
             outcome = self._pursuit.step(hurry=spun)
             if outcome is not None and outcome.published:
-                self._answer(outcome)
+                self._answers.publish(outcome)
             if spun:
                 if self._pursuit.busy:
                     self._wake.trigger()
                 return
-
-    def _answer(self, outcome: Outcome) -> None:
-        """Publish an outcome, and end a track whose box holds another thing by its depth."""
-        self._answers.publish(outcome)
-        patience = self._settings.depth_patience
-        strange = self.space.other_thing_for
-        if outcome.state is State.TRACKING and 0 < patience <= strange:
-            reason = f"the depth in the box has been another thing's for {strange:.1f} s"
-            self._pursuit.session.lose(f"{reason}: send a new box")
-            self.get_logger().warning(f"target lost: {reason}")
 
     # Parameters, services, hints ------------------------------------------------------------
 
@@ -261,7 +253,7 @@ class TrackerNode(ManagedNode):
                 self.get_fully_qualified_name(),
                 self.get_clock().now().to_msg(),
                 self._settings.diagnostics_period,
-                self._pursuit.counts,
+                self._pursuit.counts | Counter(dropped=self.images.dropped),
                 self.state.value,
                 self._active and self._enabled,
             )

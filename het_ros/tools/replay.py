@@ -97,14 +97,15 @@ def _feed(bag: BagReader, node: TrackerNode, init: Box | None, stop: StopRequest
     Without an executor the node does all its work within the call, so that nothing waits.
     """
     stamps: list[int] = []
-    inputs = {subscription.topic_name: subscription for subscription in node.subscriptions}
+    inputs = {heard.topic_name: heard.callback for heard in node.subscriptions}
+    inputs[node.images.topic] = node.on_image
     with tqdm(total=bag.frames, desc="replay", unit="frame", delay=2) as progress:
         for recorded in timeline(bag, init):
             if stop:
                 break
             if recorded.topic in inputs:
                 message = deserialize_message(recorded.cdr, message_class(recorded.kind))
-                inputs[recorded.topic].callback(message)
+                inputs[recorded.topic](message)
             if recorded.topic == bag.image_topic:
                 stamps.append(header_stamp(recorded.cdr))
                 progress.update()
