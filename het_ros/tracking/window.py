@@ -95,10 +95,9 @@ def _resample(
             max(1, round(source.shape[0] * scale[1])),
         )
         coarse_x, coarse_y = source.shape[1] / size[0], source.shape[0] / size[1]
-        # From the middle of each step on, or everything would move by half a step.
-        middle = [min(step // 2, side - 1) for side in source.shape[:2]]
-        thinned = np.ascontiguousarray(source[middle[0] :: step, middle[1] :: step])
-        source = np.asarray(cv2.resize(thinned, size, interpolation=cv2.INTER_AREA), np.uint8)
+        source = np.asarray(
+            cv2.resize(_thinned(source, step), size, interpolation=cv2.INTER_AREA), np.uint8
+        )
     to_source = np.array(
         [
             [1 / scale[0] / coarse_x, 0, (x - columns.start + 0.5 / scale[0]) / coarse_x - 0.5],
@@ -113,6 +112,19 @@ def _resample(
         borderMode=cv2.BORDER_REPLICATE,
     )
     return np.asarray(resampled, np.uint8)
+
+
+def _thinned(source: NDArray[np.uint8], step: int) -> NDArray[np.uint8]:
+    """Every ``step``-th px of every ``step``-th row, faster than by copying a slice."""
+    if step == 1:
+        return source
+    # From the middle of each step on, or everything would move by half a step.
+    top, left = (min(step // 2, side - 1) for side in source.shape[:2])
+    rest = source[top:, left:]
+    rows, columns = (-(-side // step) for side in rest.shape[:2])
+    to_source = np.diag([float(step), step, 1])[:2]
+    flags = cv2.INTER_NEAREST | cv2.WARP_INVERSE_MAP
+    return np.asarray(cv2.warpAffine(rest, to_source, (columns, rows), flags=flags), np.uint8)
 
 
 def _crop(
