@@ -24,7 +24,7 @@ def check_cost(config: TrackerConfig, cells: tuple[float, float]) -> None:
 
 
 def megabytes(config: TrackerConfig, cells: tuple[float, float]) -> float:
-    """About what the search window and its maps take, MB; right to a factor of 2.
+    """About what the search window and its maps take, MB; rather too much than too little.
 
     Args:
         config: parameters.

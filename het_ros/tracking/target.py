@@ -340,8 +340,16 @@ def _grid(config: TrackerConfig, box: Box) -> tuple[tuple[float, float], Floats]
     """Size (w, h) of the target in cells, and the image px (x, y) that a cell covers at first.
 
     At a working resolution the target is a whole number of cells.
+
+    Raises:
+        ValueError: without a working resolution, the target is smaller than a cell.
     """
     if not config.working_side:
+        if min(box.w, box.h) < config.cell:
+            raise ValueError(
+                f"the box is {box.w:g} x {box.h:g} px and a cell {config.cell}: send a larger "
+                "box, or set working_side or a smaller cell"
+            )
         return (box.w / config.cell, box.h / config.cell), np.full(2, float(config.cell))
     side = config.working_side / config.cell / math.sqrt(box.area)
     width, height = (max(4, round(length * side)) for length in (box.w, box.h))

@@ -21,6 +21,7 @@ _ANY_RIVAL = 10.0  # shares beyond this say no more
 _YOUNG = 10  # frames in which the model has seen too little to be ambiguous about a rival
 _COLOUR_POWER = 1.0
 _NEVER_BELOW = 0.2  # relative template score that nothing can excuse
+_SURE = 100.0  # a logit beyond which nothing changes but that exp() overflows
 # Logistic regression of "IoU over 0.5" on the evidence, over the frames of many real tracks.
 _BIAS, _BY_TEMPLATE, _BY_COLOUR, _BY_RIVAL = -5.0, 6.9, 2.5, -2.5
 
@@ -151,4 +152,4 @@ def probability(template: float, colour: float, rival: float) -> float:
         + _BY_COLOUR * min(colour, 1.2)
         + _BY_RIVAL * min(max(rival, 0.0), 1.5)
     )
-    return 1 / (1 + math.exp(-logit))
+    return 1 / (1 + math.exp(-max(logit, -_SURE)))

@@ -25,6 +25,7 @@ hypothesis.settings.register_profile(
     derandomize=not LONG,  # what CI tries is the same in every run
     database=DirectoryBasedExampleDatabase(FOUND) if FOUND else None,
     print_blob=True,
+    phases=[phase for phase in hypothesis.Phase if phase is not hypothesis.Phase.explain],
     suppress_health_check=list(hypothesis.HealthCheck),
 )
 

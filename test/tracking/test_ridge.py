@@ -149,3 +149,13 @@ def test_scores_need_a_model(ask):
     arguments = (maps(), CORNERS) if ask == "likelihood" else (maps(),)
     with pytest.raises(RuntimeError, match="learn first"):
         getattr(ensembles(), ask)(*arguments)
+
+
+def test_features_far_larger_than_the_regularisation():
+    """What comes after a flat first frame; the matrix is then singular in float32."""
+    features = 1e6 * np.repeat(maps(dtype=np.float32)[:1], M, axis=0)
+    model = ensembles(ridge=1e-9)
+    model.learn(features, CORNERS, EVERYONE)
+    scores = model.score_maps(features)
+    assert np.isfinite(scores).all()
+    assert np.abs(scores).max() < 2

@@ -154,7 +154,7 @@ def test_what_is_not_seen_is_never_a_confident_box(state, most):
     assert trust.state is State.LOST
 
 
-@pytest.mark.parametrize("value", [20.0, -20.0, 1e-12, 0.0])
+@pytest.mark.parametrize("value", [20.0, -20.0, -1e4, 1e30, 1e-12, 0.0])
 @pytest.mark.parametrize("frames", [0, 60])
 def test_no_evidence_breaks_the_score(value, frames):
     trust = grown_up(frames=frames)
