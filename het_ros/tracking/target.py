@@ -135,11 +135,11 @@ class Target:
         )
         self._ensembles = _base_ensembles(config, self._cells)
         self._colour = ColourModel(
-            (round(self._cells[0] * config.cell), round(self._cells[1] * config.cell)),
+            _whole(self._cells, config.cell),
             config.colour_rate,
         )
         self._scale = ScaleFilter(
-            (round(self._cells[0]), round(self._cells[1])),
+            _whole(self._cells),
             config.scales,
             config.scale_step,
             config.scale_context,
@@ -273,8 +273,7 @@ class Target:
         colour = np.zeros((rows, columns), np.float32)
         if config.colour_weight:
             likelihood = cell_means(self._colour.likelihood(frame.window.pixels), config.cell)
-            size = (round(self._cells[0]), round(self._cells[1]))
-            colour = box_means(likelihood, size, (rows, columns))
+            colour = box_means(likelihood, _whole(self._cells), (rows, columns))
         offsets = self._sub_patches.offsets.astype(np.intp)
         apart = (
             max(2, round(_RIVAL_APART * self._cells[0])),
@@ -340,20 +339,17 @@ def _grid(config: TrackerConfig, box: Box) -> tuple[tuple[float, float], Floats]
     """Size (w, h) of the target in cells, and the image px (x, y) that a cell covers at first.
 
     At a working resolution the target is a whole number of cells.
-
-    Raises:
-        ValueError: without a working resolution, the target is smaller than a cell.
     """
     if not config.working_side:
-        if min(box.w, box.h) < config.cell:
-            raise ValueError(
-                f"the box is {box.w:g} x {box.h:g} px and a cell {config.cell}: send a larger "
-                "box, or set working_side or a smaller cell"
-            )
         return (box.w / config.cell, box.h / config.cell), np.full(2, float(config.cell))
     side = config.working_side / config.cell / math.sqrt(box.area)
     width, height = (max(4, round(length * side)) for length in (box.w, box.h))
     return (width, height), np.array([box.w / width, box.h / height])
+
+
+def _whole(cells: tuple[float, float], unit: int = 1) -> tuple[int, int]:
+    """A size (w, h) in cells of ``unit`` px in whole px; of the smallest target at least 1."""
+    return max(1, round(cells[0] * unit)), max(1, round(cells[1] * unit))
 
 
 def _base_ensembles(config: TrackerConfig, cells: tuple[float, float]) -> BaseEnsembles:

@@ -42,10 +42,3 @@ def test_the_estimate_is_right_to_a_factor(config, box, cells, noise):
     finally:
         tracemalloc.stop()
     assert peak / 2 < megabytes(config, cells) < 5 * peak
-
-
-@pytest.mark.parametrize("sides", [(0.9, 30), (30, 1.5), (1e-9, 1e-9)])
-def test_a_box_smaller_than_a_cell_is_refused(sides, noise):
-    tracker = HierarchicalEnsembleTracker(TrackerConfig(working_side=0.0, cell=2))
-    with pytest.raises(ValueError, match="a cell 2"):
-        tracker.init(noise, Box(40, 40, *sides))

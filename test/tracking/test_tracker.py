@@ -135,6 +135,17 @@ def test_boxes_of_all_sizes_and_over_the_border(noise, box, within, gray):
     np.testing.assert_allclose(estimate.box.centre, box.centre, atol=within)
 
 
+@pytest.mark.parametrize("sides", [(1.0, 1.0), (0.4, 30.0), (30.0, 0.6), (1e-6, 1e-6)])
+def test_boxes_smaller_than_a_cell(noise, sides):
+    config = TrackerConfig(working_side=0.0, features=20, search_radius=8.0)
+    tracker = HierarchicalEnsembleTracker(config)
+    tracker.init(noise, Box(50, 50, *sides))
+    for _ in range(3):
+        estimate = tracker.update(noise, DT)
+        assert estimate.box.w > 0 and estimate.box.h > 0
+        assert np.isfinite([*estimate.box.as_tuple(), estimate.score]).all()
+
+
 def test_a_box_outside_the_image_is_lost_until_the_next_box(noise):
     tracker = started(noise, Box(120, 80, 20, 30))
     assert tracker.update(noise, DT).state is State.TRACKING
