@@ -27,6 +27,10 @@ class FollowerConfig:
     timeout: float = parameter(
         0.3, "without news of the target for this long it stops", unit="s", low=0.05, high=0.45
     )
+    drive_on: float = parameter(
+        1.5, "while the place is not known it drives on, slower, for this long; 0: it stops",
+        unit="s", low=0.0, high=5.0,
+    )  # fmt: skip
     rate: float = parameter(20.0, "commands a second", unit="1/s", low=10.0, high=200.0)
     image_width: float = parameter(
         0.0, "of the images, where there is no ~/bearing but only ~/pose; 0: wait for a bearing",
@@ -43,8 +47,9 @@ class FollowerConfig:
 class Follower:
     """Turns towards the target and keeps a distance; stands still when in doubt.
 
-    It moves only while fresh statuses say TRACKING or COASTING, and drives forward only while the
-    target is TRACKING and its place is known. All times are s of one monotonic clock.
+    It moves only while fresh statuses say TRACKING or COASTING. Where the target's place is not
+    known, as while it is hidden, it drives on a little, slower and slower: who waits in front
+    of a column sees the target come out far away, or never. All times are s of one clock.
     """
 
     def __init__(self, config: FollowerConfig) -> None:
@@ -55,6 +60,7 @@ class Follower:
         self._aimed = -math.inf
         self._away = 0.0
         self._placed = -math.inf
+        self._speed = 0.0  # m/s, the last that was due to a known place
 
     def on_status(self, state: State, now: float) -> None:
         """Take the state of the track."""
@@ -83,15 +89,23 @@ class Follower:
             State.COASTING,
         ):
             return 0.0, 0.0
-        angular = linear = 0.0
+        angular = 0.0
         if now - self._aimed <= config.timeout:
             angular = _limited(-config.turn_gain * self._bearing, config.max_angular)
-        if self._state is State.TRACKING and now - self._placed <= config.timeout:
+        return self._drive(now), angular
+
+    def _drive(self, now: float) -> float:
+        """The speed forward, m/s."""
+        config, unknown_for = self.config, now - self._placed
+        if self._state is State.TRACKING and unknown_for <= config.timeout:
             # Turn first, then drive: a target at the side is no place to drive to.
             ahead = max(math.cos(self._bearing), 0.0)
             wanted = config.drive_gain * (self._away - config.distance) * ahead
-            linear = _limited(wanted, config.max_linear)
-        return linear, angular
+            self._speed = _limited(wanted, config.max_linear)
+            return self._speed
+        if unknown_for >= config.drive_on:
+            return 0.0
+        return max(self._speed, 0.0) * (1 - unknown_for / config.drive_on)
 
 
 def _limited(value: float, most: float) -> float:

@@ -84,12 +84,10 @@ class NodeConfig:
         low=0.0,
         high=10.0,
     )
-    depth_patience: float = parameter(
-        1.0,
-        "with depth, a track is LOST whose box has held another thing for this long; 0: never",
-        unit="s",
-        low=0.0,
-        high=60.0,
+    depth_witness: bool = parameter(
+        True,
+        "with depth, whatever else comes into the box, a column before the target or the wall "
+        "behind it, is not followed; false where the depth is not to be trusted",
     )
     debug_rate: float = parameter(
         10.0,

@@ -9,6 +9,10 @@ from __future__ import annotations
 
 import time
 from collections import Counter
+from collections.abc import Callable
+from typing import Any
+
+from std_msgs.msg import Header
 
 from het_ros.ros.backlog import Backlog
 from het_ros.ros.box_requests import BoxRequests, Request
@@ -23,8 +27,10 @@ from het_ros.ros.stamps import Order, StampGate
 from het_ros.tracking.box import Box
 from het_ros.tracking.config import TrackerConfig
 from het_ros.tracking.estimate import Estimate, State
+from het_ros.tracking.target import Witness
 
 MEGA = 1_000_000
+FrameWitness = Callable[[Box, tuple[int, int], Header, int], bool]
 
 
 class Pursuit:
@@ -32,18 +38,32 @@ class Pursuit:
 
     Feed it with :meth:`on_frame` and :meth:`on_box`, and call :meth:`step` while :attr:`busy`.
 
+    Args:
+        config: the tracker's parameters.
+        settings: the node's.
+        logger: of the node.
+        witness: another sensor, asked whether a track's target may be in a box of an image of
+            that size (width, height) px and header.
+
     Attributes:
         session: the track.
         counts: frames by what became of them: processed, duplicate, late, unreadable, skipped.
         track: number of the track, 1 for the first; 0 before it.
     """
 
-    def __init__(self, config: TrackerConfig, settings: NodeConfig, logger) -> None:
+    def __init__(
+        self,
+        config: TrackerConfig,
+        settings: NodeConfig,
+        logger: Any,
+        witness: FrameWitness | None = None,
+    ) -> None:
         self.session = TrackingSession(config, settings.max_gap)
         self.counts: Counter[str] = Counter()
         self.track = 0
         self.settings = settings
         self._logger = logger
+        self._witness = witness
         self._hints = Hints(logger)
         self._gate = StampGate(settings.jump_back)
         self._ring = FrameRing(
@@ -157,7 +177,9 @@ class Pursuit:
         """Follow the track into this frame; a fault inside ends the track, not the node."""
         before = self.session.state
         try:
-            estimate = self.session.follow(pixels, frame.stamp, frame.header.frame_id)
+            estimate = self.session.follow(
+                pixels, frame.stamp, frame.header.frame_id, self._witness_of(frame, pixels)
+            )
         except Exception as error:  # a robot must hear LOST, whatever went wrong in here
             self._logger.error(f"the tracker failed on an image: {error!r}")
             self.session.lose(f"internal error: {error!r}")
@@ -165,6 +187,14 @@ class Pursuit:
         if self.session.state is State.LOST and before is not State.LOST:
             self._logger.warning(f"target lost: {self.session.reason}")
         return estimate
+
+    def _witness_of(self, frame: Frame, pixels: Pixels) -> Witness | None:
+        """Asks the other sensor of this frame and track."""
+        ask = self._witness
+        if ask is None:
+            return None
+        size = pixels.shape[1], pixels.shape[0]
+        return lambda box: ask(box, size, frame.header, self.track)
 
     def _pixels(self, frame: Frame) -> Pixels | None:
         """The frame's image; None where no one needs it and its like could be read before."""

@@ -10,6 +10,7 @@ from het_ros.ros.stamps import SECOND
 from het_ros.tracking.box import Box
 from het_ros.tracking.config import TrackerConfig
 from het_ros.tracking.estimate import Estimate, State
+from het_ros.tracking.target import Witness
 from het_ros.tracking.tracker import HierarchicalEnsembleTracker
 
 Pixels = NDArray[np.uint8]
@@ -66,8 +67,13 @@ class TrackingSession:
         self._take(estimate)
         return estimate
 
-    def follow(self, image: Pixels, stamp: int, source: str = "") -> Estimate | None:
-        """The estimate for the next frame, or None where there is no track or it ends here."""
+    def follow(
+        self, image: Pixels, stamp: int, source: str = "", witness: Witness | None = None
+    ) -> Estimate | None:
+        """The estimate for the next frame, or None where there is no track or it ends here.
+
+        ``witness`` is asked by :meth:`HierarchicalEnsembleTracker.update`.
+        """
         if self._tracker is None:
             return None
         gap = (stamp - self._stamp) / SECOND
@@ -75,7 +81,8 @@ class TrackingSession:
         if broken:
             self.lose(broken)
             return None
-        estimate = _finite(self._tracker.update(_with_channels_of(image, self._shape), gap))
+        pixels = _with_channels_of(image, self._shape)
+        estimate = _finite(self._tracker.update(pixels, gap, witness))
         self._stamp = stamp
         if estimate.state is State.TRACKING:
             self._seen = stamp

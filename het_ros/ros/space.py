@@ -5,18 +5,19 @@ from __future__ import annotations
 from collections import deque
 
 from geometry_msgs.msg import PoseStamped, Vector3Stamped
-from numpy import float64
+from numpy import float32, float64
 from numpy.typing import NDArray
 from sensor_msgs.msg import CameraInfo, Image
 from std_msgs.msg import Header
 
-from het_ros.ros.depth import DepthError, SteadyDepth, depth_in, metres_of, pose_at
+from het_ros.ros.depth import DepthError, metres_of, pose_at
 from het_ros.ros.hints import Hints
 from het_ros.ros.images import ImageError
 from het_ros.ros.messages import stamp_ns
 from het_ros.ros.optics import CameraError, bearing_message, ray_of
 from het_ros.ros.parameters import NodeConfig
 from het_ros.ros.stamps import SECOND
+from het_ros.ros.target_depth import TargetDepth
 from het_ros.tracking.box import Box
 
 DEPTHS = 5  # depth images that are kept: one of them belongs to the image in work
@@ -33,8 +34,13 @@ class Space:
         self.settings = settings
         self._hints = hints
         self._info: CameraInfo | None = None
-        self._steady = SteadyDepth()
+        self._target = TargetDepth()
         self._depths: deque[Image] = deque(maxlen=DEPTHS)
+        self._converted: tuple[Image, NDArray[float32]] | None = None
+
+    def forget(self) -> None:
+        """Forget the targets' depths: tracks are counted from 1 again."""
+        self._target = TargetDepth()
 
     def on_camera_info(self, message: CameraInfo) -> None:
         """Take the newest calibration."""
@@ -53,27 +59,30 @@ class Space:
         self, box: Box, size: tuple[int, int], header: Header, track: int
     ) -> PoseStamped | None:
         """The place of a track's target, or None without camera_info or depth of the target."""
-        depth_image = self._depth_at(stamp_ns(header))
-        ray = self._ray(box, size, header) if depth_image is not None else None
-        if depth_image is None or ray is None:
+        depth_image = self._depth_at(header)
+        if depth_image is None:
+            self._explain_no_depth(header)
             return None
-        if depth_image.header.frame_id != header.frame_id:
-            self._hints.once(
-                "depth frame",
-                f"depth is in {depth_image.header.frame_id!r}, the images in {header.frame_id!r}: "
-                "send depth that is registered to the images",
-            )
+        self._compare_frames(depth_image, header)
         try:
-            depth = depth_in(box, size, metres_of(depth_image))
-            return pose_at(ray, self._steady.checked(depth, stamp_ns(header), track), header)
+            metres = self._metres(depth_image)
+            depth = self._target.measure(box, size, metres, stamp_ns(header), track)
+            ray = self._ray(box, size, header)
+            return None if ray is None else pose_at(ray, depth, header)
         except (DepthError, ImageError) as error:
             self._hints.once(f"depth {type(error).__name__}", f"no ~/target_pose: {error}")
             return None
 
-    @property
-    def other_thing_for(self) -> float:
-        """How long the depth in the box has been another thing's than the target's, s."""
-        return self._steady.refused_for
+    def may_hold(self, box: Box, size: tuple[int, int], header: Header, track: int) -> bool:
+        """Whether a box may hold the track's target; True where there is no depth to tell it."""
+        depth_image = self._depth_at(header)
+        if depth_image is None or not self.settings.depth_witness:
+            return True
+        try:
+            metres = self._metres(depth_image)
+        except ImageError:
+            return True
+        return self._target.may_be_in(box, size, metres, stamp_ns(header), track)
 
     def _ray(self, box: Box, size: tuple[int, int], header: Header) -> NDArray[float64] | None:
         if self._info is None:
@@ -84,18 +93,39 @@ class Space:
             self._hints.once("camera", f"no ~/bearing: {error}")
             return None
 
-    def _depth_at(self, stamp: int) -> Image | None:
-        nearest = min(
-            self._depths, key=lambda depth: abs(stamp_ns(depth.header) - stamp), default=None
-        )
-        if nearest is None:
-            return None
-        off = abs(stamp_ns(nearest.header) - stamp) / SECOND
-        if off > self.settings.depth_tolerance:
+    def _compare_frames(self, depth_image: Image, header: Header) -> None:
+        if depth_image.header.frame_id != header.frame_id:
+            self._hints.once(
+                "depth frame",
+                f"depth is in {depth_image.header.frame_id!r}, the images in {header.frame_id!r}: "
+                "send depth that is registered to the images",
+            )
+
+    def _metres(self, depth_image: Image) -> NDArray[float32]:
+        """A depth image in m, converted once; raises ImageError."""
+        if self._converted is None or self._converted[0] is not depth_image:
+            self._converted = depth_image, metres_of(depth_image)
+        return self._converted[1]
+
+    def _nearest_depth(self, header: Header) -> tuple[Image | None, float]:
+        """The depth image nearest in time, and how far off it is, s."""
+        stamp = stamp_ns(header)
+        offs = [(abs(stamp_ns(image.header) - stamp), i) for i, image in enumerate(self._depths)]
+        if not offs:
+            return None, 0.0
+        off, index = min(offs)
+        return self._depths[index], off / SECOND
+
+    def _depth_at(self, header: Header) -> Image | None:
+        """The depth image that belongs to an image."""
+        nearest, off = self._nearest_depth(header)
+        return nearest if off <= self.settings.depth_tolerance else None
+
+    def _explain_no_depth(self, header: Header) -> None:
+        nearest, off = self._nearest_depth(header)
+        if nearest is not None:
             self._hints.once(
                 "depth stamp",
                 f"no ~/target_pose: the nearest depth image is {off:.3f} s off the image, and "
                 f"depth_tolerance is {self.settings.depth_tolerance:g} s",
             )
-            return None
-        return nearest

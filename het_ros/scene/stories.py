@@ -182,8 +182,8 @@ def patrol(rng: np.random.Generator) -> Story:
     """A minute up and down the promenade, behind a column at each turn, and a passer-by.
 
     Made for a robot that steers the camera: seen from straight ahead the column hides the figure
-    for half a second, from aside for more than one, and a robot that keeps 4 m away from the
-    figure never comes within half a metre of the column.
+    for 0.4 s, from aside for more than a second, and a robot that keeps 4 m away from the figure
+    never comes within half a metre of the column.
     """
     z, speed = rng.uniform(6.1, 6.4), 0.85
     turns = (-3.0, 4.0, -4.0, 4.0, -4.0, 4.0, -4.0)
@@ -192,7 +192,7 @@ def patrol(rng: np.random.Generator) -> Story:
         t += abs(end - begin) / speed
         target += [(t, end, z), (t + 1.2, end, z + rng.uniform(-0.1, 0.1))]
         t += 1.2
-    column = Column(0.3, z - 0.75, (0.5 * speed + STEP_WIDTH) * (z - 0.75) / z)
+    column = Column(0.3, z - 0.7, (0.4 * speed + STEP_WIDTH) * (z - 0.7) / z)
     other = ((12.0, 9.0, 7.4), (34.0, -9.0, 7.4), (36.0, -9.0, 7.5), (60.0, 9.0, 7.5))
     return Story(60.0, tuple(target), (Passer(other),), (column,))
 

@@ -36,6 +36,7 @@ from het_ros.tools.video import VideoWriter
 from het_ros.tracking.estimate import State
 
 FAR = 30.0  # m, depth of the street behind all
+FASTEST = 1.2  # m/s: a robot slower than who it follows loses them
 START = 1_000_000_000  # ns, stamp of the first image: 0 would mean "no stamp"
 
 
@@ -81,7 +82,10 @@ class Loop:
         self._follower = FollowerNode(
             clock=lambda: self._time,
             context=context,
-            parameter_overrides=[Parameter("distance", value=distance)],
+            parameter_overrides=[
+                Parameter("distance", value=distance),
+                Parameter("max_linear", value=FASTEST),
+            ],
         )
 
     def run(self) -> Iterator[Moment]:

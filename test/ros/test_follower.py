@@ -60,10 +60,27 @@ def test_stops_within_half_a_second_of_silence():
     assert highest.timeout + 1 / highest.rate <= 0.5
 
 
-def test_does_not_drive_by_a_prediction():
-    linear, angular = following(State.COASTING, bearing=0.3, away=5.0).command(0.0)
-    assert linear == 0
-    assert angular < 0
+def test_drives_on_slower_and_slower_while_the_target_is_hidden():
+    follower = following(bearing=0.0, away=5.0)
+    speeds = [follower.command(0.0)[0]]
+    for i in range(1, 21):
+        now = i * CONFIG.drive_on / 16
+        follower.on_status(State.COASTING, now)
+        follower.on_bearing(0.3, 1.0, now)
+        linear, angular = follower.command(now)
+        assert angular < 0
+        speeds.append(linear)
+    assert speeds[0] == CONFIG.max_linear
+    assert speeds == sorted(speeds, reverse=True)
+    assert speeds[-5:] == [0.0] * 5
+    assert speeds[2] > 0
+
+
+def test_does_not_drive_backwards_without_seeing_the_target():
+    follower = following(away=0.5)
+    assert follower.command(0.0)[0] < 0
+    follower.on_status(State.COASTING, 0.1)
+    assert follower.command(0.1)[0] == 0
 
 
 def test_turns_only_without_a_place():
