@@ -18,6 +18,7 @@ ORIENTATIONS = 6
 _GRADIENT_SCALE = 80.0
 # Gradients far below this many grey values are noise and are not blown up by normalisation.
 _GRADIENT_FLOOR = 4.0
+_BELOW_HALF_TURN = float(np.nextafter(np.float32(ORIENTATIONS), np.float32(0)))
 
 
 class _Source:
@@ -49,11 +50,11 @@ class _Source:
     @cached_property
     def lightness(self) -> Pixels:
         """(H, W) uint8, L* of a colour image or the gray image itself."""
-        return self.pixels if self.pixels.ndim == 2 else self.lab[..., 0]
+        return self.pixels if self.pixels.ndim == 2 else np.ascontiguousarray(self.lab[..., 0])
 
     @cached_property
     def gradient(self) -> tuple[Plane, Plane]:
-        """Gradient's locally normalised magnitude and its direction in [0, 2 ORIENTATIONS).
+        """Gradient's locally normalised magnitude and its direction in [0, ORIENTATIONS).
 
         Divided by the mean magnitude around, a gradient says the same under a lamp and in the
         shade. Both (H, W) float32.
@@ -67,6 +68,9 @@ class _Source:
         cv2.divide(magnitude, mean, magnitude, scale=_GRADIENT_SCALE)
         directions = np.asarray(angle, np.float32)
         directions *= ORIENTATIONS / math.pi
+        # Directions k and k + ORIENTATIONS are the same; the subtraction is exact.
+        turned = cv2.threshold(directions, _BELOW_HALF_TURN, ORIENTATIONS, cv2.THRESH_BINARY)[1]
+        directions -= turned
         return np.asarray(magnitude, np.float32), directions
 
 
@@ -78,14 +82,15 @@ def _orientation(k: int) -> Callable[[_Source], Plane]:
 
     def channel(source: _Source) -> Plane:
         magnitude, angle = source.gradient
-        # Directions k and k + ORIENTATIONS are the same, and 2 ORIENTATIONS is a full turn.
-        away = np.abs(angle - np.float32(k))
-        np.minimum(away, np.abs(angle - np.float32(k + ORIENTATIONS)), out=away)
-        if k == 0:
-            np.minimum(away, 2 * ORIENTATIONS - angle, out=away)
-        share = np.maximum(1 - away, 0, out=away)
-        share *= magnitude
-        return np.asarray(share, np.float32)
+        if k == 0:  # which is next to the last one as well
+            away = np.minimum(angle, ORIENTATIONS - angle)
+        else:
+            away = np.subtract(angle, k)
+            np.abs(away, out=away)
+        np.subtract(1, away, out=away)
+        np.maximum(away, 0, out=away)
+        away *= magnitude
+        return np.asarray(away, np.float32)
 
     return channel
 

@@ -148,10 +148,13 @@ def grid_means(planes: Planes, centre: Floats, sides: Floats, grid: int) -> Feat
     for channel, plane in enumerate(planes):
         stack[:, channel] = plane[rows, columns]
     strips = down.reshape(sizes * grid, -1) @ stack.reshape(len(stack), -1)
-    sums = strips.reshape(sizes, grid * channels, -1) @ across.transpose(0, 2, 1)
+    # A copy of these few makes the product twice as fast.
+    across = np.ascontiguousarray(across.transpose(0, 2, 1))
+    sums = strips.reshape(sizes, grid * channels, -1) @ across
     areas = (ys[:, 1:] - ys[:, :-1])[:, :, None] * (xs[:, 1:] - xs[:, :-1])[:, None, :] + 1e-3
     means = sums.reshape(sizes, grid, channels, grid)
-    return np.asarray(means * (1 / areas).astype(np.float32)[:, :, None, :])
+    means *= (1 / areas).astype(np.float32)[:, :, None, :]
+    return np.asarray(means)
 
 
 def _coverage(lines: Floats, length: int) -> tuple[slice, Features]:
@@ -166,6 +169,7 @@ def _coverage(lines: Floats, length: int) -> tuple[slice, Features]:
     """
     first = min(int(lines.min()), length - 1)
     last = max(first + 1, int(np.ceil(lines.max())))
-    before = lines[:, :, None] - np.arange(first, last)
+    # Between 0 and 1, which is all that is left of it, float32 says it well enough.
+    before = (lines[:, :, None] - np.arange(first, last)).astype(np.float32)
     np.minimum(np.maximum(before, 0, out=before), 1, out=before)
-    return slice(first, last), (before[:, 1:] - before[:, :-1]).astype(np.float32)
+    return slice(first, last), before[:, 1:] - before[:, :-1]
