@@ -4,6 +4,10 @@ Callbacks are taken from the node's own entities, as an executor would, and get 
 through serialisation. What is raised in one comes out here.
 """
 
+import atexit
+from functools import cache
+from inspect import signature
+
 import cv2
 import numpy as np
 import rclpy
@@ -66,6 +70,15 @@ TRANSITIONS = [
 ]
 
 
+@cache
+def context() -> rclpy.Context:
+    """One for all cases: each of its own would cost threads and memory until it is collected."""
+    made = rclpy.Context()
+    rclpy.init(context=made)
+    atexit.register(made.try_shutdown)
+    return made
+
+
 def delivered(message):
     """A message as it comes out of the middleware."""
     return deserialize_message(serialize_message(message), type(message))
@@ -77,14 +90,13 @@ class Node(RuleBasedStateMachine):
     @initialize(transport=st.sampled_from(["raw", "raw", "compressed"]))
     def start(self, transport):
         COUNTS["node"] += 1
-        self.context = rclpy.Context()
-        rclpy.init(context=self.context)
         self.compressed = transport == "compressed"
         self.sent = {}
         self.time = 10.0
         self.shown = 0
+        self.sequence = 0
         self.node = TrackerNode(
-            context=self.context,
+            context=context(),
             tap=self.hear,
             parameter_overrides=[Parameter("image_transport", value=transport)],
         )
@@ -99,7 +111,11 @@ class Node(RuleBasedStateMachine):
         """Give a message to whoever subscribes; nobody does while the node is not active."""
         for subscription in tuple(self.node.subscriptions):
             if subscription.topic_name.endswith(topic):
-                subscription.callback(delivered(message))
+                arguments = [delivered(message)]
+                if len(signature(subscription.callback).parameters) == 2:
+                    self.sequence += 1
+                    arguments.append({"publication_sequence_number": self.sequence})
+                subscription.callback(*arguments)
 
     def call(self, name, kind, **request):
         """Call a service, if the node offers it now."""
@@ -164,6 +180,10 @@ class Node(RuleBasedStateMachine):
     def any_depth(self, data, soon):
         self.feed("/depth", data.draw(depth_images(header_at(self.time) if soon else None)))
 
+    @rule(sequence=st.sampled_from([0, 5, 2**63, 2**64 - 2]) | st.integers(0, 2**64 - 2))
+    def lost_on_the_way(self, sequence):
+        self.sequence = sequence
+
     @rule(header=headers())
     def good_image_of_any_time(self, header):
         self.send(image_message(frames()[0], header))
@@ -226,7 +246,6 @@ class Node(RuleBasedStateMachine):
             self.recover()
         finally:
             self.node.destroy_node()
-            self.context.try_shutdown()
 
     def recover(self):
         assert isinstance(self.node, LifecycleNode)
