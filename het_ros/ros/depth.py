@@ -88,12 +88,17 @@ def nearest_surface(samples: NDArray[np.float32]) -> float:
     Raises:
         DepthError: there is none.
     """
-    depths = np.sort(samples)
-    cuts = np.flatnonzero(np.diff(depths) > np.maximum(GAP[0], GAP[1] * depths[:-1])) + 1
-    for surface in np.split(depths, cuts):
-        if surface.size >= max(LEAST_SHARE * depths.size, 1):
+    for surface in surfaces(samples):
+        if surface.size >= max(LEAST_SHARE * samples.size, 1):
             return float(np.median(surface))
     raise DepthError("no surface fills enough of the box: its depths are all over the place")
+
+
+def surfaces(samples: NDArray[np.float32]) -> list[NDArray[np.float32]]:
+    """Depths (n,) in m, parted at the gaps between them, the nearest surface first."""
+    depths = np.sort(samples)
+    cuts = np.flatnonzero(np.diff(depths) > np.maximum(GAP[0], GAP[1] * depths[:-1])) + 1
+    return np.split(depths, cuts)
 
 
 def pose_at(ray: NDArray[np.float64], depth: float, header: Header) -> PoseStamped:

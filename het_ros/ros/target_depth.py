@@ -1,8 +1,8 @@
 """Whether a box holds the target by its depth, and how far away the target is.
 
-The depth of a body changes little from frame to frame. So the target is what lies in a band around
-its last depth, and it is not in a box that the band fills much less of than it used to: there
-is a column before it, or the box is on the wall behind it.
+The depth of a body changes little from frame to frame. So the target is the surface nearest to its
+last depth, and it is not in a box that this surface fills much less of than it used to: there is
+a column before it, or the box is on the wall behind it.
 """
 
 from __future__ import annotations
@@ -10,7 +10,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from het_ros.ros.depth import DepthError, nearest_surface, samples_in
+from het_ros.ros.depth import LEAST_SHARE, DepthError, nearest_surface, samples_in, surfaces
 from het_ros.ros.stamps import SECOND
 from het_ros.tracking.box import Box
 
@@ -54,8 +54,8 @@ class TargetDepth:
             samples = samples_in(box, size, metres)
         except DepthError:
             return True
-        fits = self._fitting(samples, stamp)
-        if fits.mean() >= LEAST_PART * self._share:
+        _, share = self._surface(samples, stamp)
+        if share >= LEAST_PART * self._share:
             return True
         nearer = samples[samples < self._depth - SLACK]
         if nearer.size > COVERS * samples.size:
@@ -77,28 +77,31 @@ class TargetDepth:
         """
         samples = samples_in(box, size, metres)
         if track != self._track:
-            self._depth, self._stamp = nearest_surface(samples), stamp
-            self._share = float(self._fitting(samples, stamp).mean())
             self._track, self._obstacle = track, 0.0
+            self._depth, self._stamp = nearest_surface(samples), stamp
+            _, self._share = self._surface(samples, stamp)
             return self._depth
-        before = self._depth
-        passed = max(stamp - self._stamp, 0) / SECOND
-        fits = self._fitting(samples, stamp)
-        share = float(fits.mean())
+        depth, share = self._surface(samples, stamp)
         if share < LEAST_PART * self._share:
             raise DepthError(
-                f"the depth went from {before:.1f} to {np.median(samples):.1f} m in "
-                f"{passed:.2f} s: that is another thing in the box"
+                f"the depth went from {self._depth:.1f} to {np.median(samples):.1f} m in "
+                f"{(stamp - self._stamp) / SECOND:.2f} s: that is another thing in the box"
             )
-        self._depth, self._stamp, self._obstacle = nearest_surface(samples[fits]), stamp, 0.0
+        self._depth, self._stamp, self._obstacle = depth, stamp, 0.0
         self._share += SHARE_RATE * (share - self._share)
-        return self._depth
+        return depth
 
-    def _fitting(self, samples: NDArray[np.float32], stamp: int) -> NDArray[np.bool_]:
-        """Which depths (n,) may be the target's."""
+    def _surface(self, samples: NDArray[np.float32], stamp: int) -> tuple[float, float]:
+        """Depth and share of the samples (n,) of the surface that is the target's, if any is."""
         passed = max(stamp - self._stamp, 0) / SECOND
         watched = (stamp - self._looked) / SECOND < BLINK
         self._looked = stamp
         allowed = SLACK + passed * (HIDDEN if watched else FASTEST)
-        nearest = max(self._depth - allowed, self._obstacle + BEHIND if self._obstacle else 0.0)
-        return (samples >= nearest) & (samples <= self._depth + allowed)
+        behind = self._obstacle + BEHIND if self._obstacle else 0.0
+        found, least = (0.0, 0.0), allowed
+        for surface in surfaces(samples):
+            depth, share = float(np.median(surface)), surface.size / samples.size
+            off = abs(depth - self._depth)
+            if depth >= behind and share >= LEAST_SHARE and off <= least:
+                found, least = (depth, share), off
+        return found

@@ -26,6 +26,7 @@ def known() -> TargetDepth:
         (1, 0.1, person(0.3, 2.0), 2.0),  # turned sideways
         (1, 1.0, person(0.5, 5.5, 9.0), 5.5),  # not looked at for a second: somebody ran
         (1, 0.1, post(person(0.5), 6), 2.0),  # a lamp post before, a little of it
+        (1, 0.1, post(person(0.5), 12, 1.6), 2.0),  # somebody close before, a shoulder of them
         (1, 0.1, holes(person(0.5), 0.8), 2.0),
         (1, 0.1, person(0.5, 6.0, 9.0), None),  # on somebody behind
         (1, 0.1, wall(6.0), None),  # on the wall behind
