@@ -8,6 +8,7 @@ SHELL := /bin/bash
 PYTHON ?= python3
 VENV := .venv
 PEERS := .venv-peers
+OLDEST := .venv-oldest
 VENV_EXTRAS := ros,opencv,bags,test,build
 PEERS_EXTRAS := ros,bags,evaluate
 BUILT := install/.built
@@ -21,15 +22,16 @@ WORKSPACE := $(ROS); source install/setup.bash
 PEERS_SPACE := $(CLEAN); source $(PEERS)/bin/activate; export AMENT_PREFIX_PATH="$$VIRTUAL_ENV"; \
 	source install/setup.bash
 
-.PHONY: help setup build run test evaluate bench docs format clean
+.PHONY: help setup build run test test-oldest fuzz evaluate bench docs format clean
 
 help: ## What there is to make
-	@grep -E '^[a-z]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:[^#]*## /\t/' | expand -t 12
+	@grep -E '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:[^#]*## /\t/' | expand -t 14
 	@echo
 	@echo 'make run [VIDEO=file INIT=x,y,w,h | SEQUENCE=folder] [OUT=out/run]'
 	@echo 'make evaluate DATA=folder [OUT=out/evaluate] [TRACKERS=het,csrt] [SEEDS=3]'
 	@echo '     [PROTOCOL=ope|tre|sre|realtime|restart] [SEQUENCES=a,b] [SCHEDULER=tcp://host:8786]'
 	@echo 'make bench [OUT=out/bench] [DATA=folder]'
+	@echo 'make fuzz [MINUTES=10] [OUT=out/fuzz]'
 
 # Set-up -------------------------------------------------------------------------------------
 
@@ -54,6 +56,12 @@ $(PEERS)/.ready: setup.py
 	@echo 'Setting up $(PEERS): the same with the OpenCV that has the peers (opencv-contrib)'
 	$(call make_venv,$(PEERS),$(PEERS_EXTRAS))
 
+$(OLDEST)/.ready: setup.py test/oldest.txt
+	@echo 'Setting up $(OLDEST): ROS 2 Jazzy with the oldest NumPy, OpenCV and filterpy'
+	$(call make_venv,$(OLDEST),ros)
+	$(CLEAN); $(OLDEST)/bin/python -m pip install --quiet --disable-pip-version-check -r test/oldest.txt
+	@touch $@
+
 $(BUILT): $(VENV)/.ready package.xml setup.py setup.cfg $(SOURCES)
 	$(ROS); colcon build --packages-select het_ros --event-handlers console_stderr- summary-
 	@touch $@
@@ -70,13 +78,28 @@ run: OUT ?= out/run
 run: $(BUILT) ## Follow the target of the recorded bag, or of your own footage; look into out/run
 	@$(WORKSPACE); python -m het_ros.tools.run --out '$(OUT)' $(RUN_OPTIONS)
 
-test: $(BUILT) ## All that CI runs: style, types, import contracts, package.xml, tests
+test: $(BUILT) ## Style, types, import contracts, package.xml, all tests
 	$(WORKSPACE); ruff check .
 	$(WORKSPACE); ruff format --check --quiet .
 	$(WORKSPACE); mypy
 	$(WORKSPACE); lint-imports
 	$(WORKSPACE); python -c 'from catkin_pkg.package import parse_package as p; print("package.xml is valid:", p("package.xml", warnings=[]))'
 	$(WORKSPACE); python -m pytest $(PYTEST)
+
+OLDEST_TESTS := test/tracking test/fuzz/test_conversions.py test/fuzz/test_core.py \
+	$(addprefix test/ros/test_,images.py messages.py optics.py depth.py stamps.py session.py \
+	parameters.py tracker_node.py)
+
+test-oldest: $(OLDEST)/.ready ## Core, conversions and node with NumPy 1.26 and OpenCV 4.6
+	$(CLEAN); source $(OLDEST)/bin/activate; export AMENT_PREFIX_PATH="$$VIRTUAL_ENV"; \
+		python -c 'import cv2, numpy; print("NumPy", numpy.__version__, "OpenCV", cv2.__version__)'; \
+		python -m pytest -p no:cacheprovider $(OLDEST_TESTS) $(PYTEST)
+
+MINUTES ?= 10
+
+fuzz: OUT ?= out/fuzz
+fuzz: $(BUILT) ## Random input for MINUTES=10: what breaks something is kept in out/fuzz
+	@$(WORKSPACE); python test/fuzz/campaign.py --minutes $(MINUTES) --out '$(OUT)'
 
 DATA ?=
 PEER_OPTIONS = $(if $(TRACKERS),--trackers '$(TRACKERS)') $(if $(SEEDS),--seeds $(SEEDS)) \
