@@ -89,7 +89,7 @@ class Answers:
         pixels = outcome.pixels
         if pixels is None:
             try:
-                pixels = outcome.frame.pixels(self.settings.white_level)
+                pixels = outcome.frame.pixels(self.settings.reading)
             except ImageError:
                 return
         image = drawn(pixels, outcome.estimate, outcome.state, outcome.reason)

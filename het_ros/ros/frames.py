@@ -9,7 +9,7 @@ import cv2
 from sensor_msgs.msg import CompressedImage, Image
 from std_msgs.msg import Header
 
-from het_ros.ros.images import ImageError, Pixels, array_of
+from het_ros.ros.images import ImageError, Pixels, Reading, array_of
 from het_ros.ros.stamps import SECOND
 
 ImageMessage = Image | CompressedImage
@@ -25,16 +25,16 @@ class Conversion:
 
     def __init__(self, message: ImageMessage) -> None:
         self._message = message
-        self._pixels: dict[int, Pixels] = {}
+        self._pixels: dict[Reading, Pixels] = {}
         self._open = True
 
-    def pixels(self, white: int) -> Pixels:
+    def pixels(self, reading: Reading) -> Pixels:
         """The pixels; raises ImageError as :func:`array_of` does."""
-        pixels = self._pixels.get(white)
+        pixels = self._pixels.get(reading)
         if pixels is None:
-            pixels = array_of(self._message, white)
+            pixels = array_of(self._message, reading)
             if self._open:
-                self._pixels[white] = pixels
+                self._pixels[reading] = pixels
         return pixels
 
     def close(self) -> None:
@@ -69,9 +69,9 @@ class Frame:
         """Bytes of data."""
         return len(self.message.data)
 
-    def pixels(self, white: int) -> Pixels:
+    def pixels(self, reading: Reading) -> Pixels:
         """Its image; raises ImageError as :func:`array_of` does."""
-        return self.shared.pixels(white) if self.shared else array_of(self.message, white)
+        return self.shared.pixels(reading) if self.shared else array_of(self.message, reading)
 
 
 class FrameRing:
@@ -81,10 +81,10 @@ class FrameRing:
     is then started on an image that is a little worse, which costs less than no start.
     """
 
-    def __init__(self, seconds: float, megabytes: float, white: int) -> None:
+    def __init__(self, seconds: float, megabytes: float, reading: Reading | None = None) -> None:
         self.seconds = seconds
         self.megabytes = megabytes
-        self._white = white
+        self._reading = reading or Reading()
         self._frames: deque[Frame] = deque()
         self._size = 0
         self._compressed = 0  # so many of the oldest are JPEG by now
@@ -149,18 +149,18 @@ class FrameRing:
         index = self._compressed
         self._compressed += 1
         frame = self._frames[index]
-        smaller = _as_jpeg(frame, self._white)
+        smaller = _as_jpeg(frame, self._reading)
         if smaller is not None and smaller.size < frame.size:
             self._frames[index] = smaller
             self._size -= frame.size - smaller.size
 
 
-def _as_jpeg(frame: Frame, white: int) -> Frame | None:
+def _as_jpeg(frame: Frame, reading: Reading) -> Frame | None:
     """The frame with its pixels as JPEG; None where it is compressed already or unreadable."""
     if isinstance(frame.message, CompressedImage):
         return None
     try:
-        pixels = array_of(frame.message, white)
+        pixels = array_of(frame.message, reading)
     except ImageError:
         return None
     data = cv2.imencode(".jpg", pixels, [cv2.IMWRITE_JPEG_QUALITY, JPEG_QUALITY])[1].tobytes()

@@ -12,7 +12,11 @@ import numpy as np
 from numpy.typing import NDArray
 from sensor_msgs.msg import CompressedImage, Image
 
+from het_ros.ros.image_size import claimed_size
+
 Pixels = NDArray[np.uint8]
+MOST_PIXELS = 50e6
+LONGEST_HEADER = 65536  # bytes that are looked at first: some cameras put a thumbnail there
 KINDS = {1: np.uint8, 2: np.uint16, 4: np.float32}
 
 
@@ -93,33 +97,74 @@ def to_array(message: Image, white: int = 65535) -> Pixels:
     return _to_bgr(pixels, layout, message)
 
 
-def decode(message: CompressedImage) -> Pixels:
-    """The pixels of a CompressedImage (JPEG, PNG...), as :func:`to_array` gives them.
+def decode(message: CompressedImage, most: float = MOST_PIXELS) -> Pixels:
+    """The pixels of a CompressedImage (JPEG, PNG, TIFF), as :func:`to_array` gives them.
+
+    Args:
+        message: the image.
+        most: px, more are refused by the header, before anything is decoded.
 
     Raises:
-        ImageError: a depth image, or data that is cut off or no image.
+        ImageError: a depth image, data that is cut off, of another format, or too large.
     """
     if "compressedDepth" in message.format:
         raise ImageError("compressedDepth carries a depth image: send a compressed colour image")
     data = np.frombuffer(message.data, np.uint8)
-    if data.size >= 2 and data[0] == 0xFF and data[1] == 0xD8 and not _has_jpeg_end(data):
+    if data[:2].tobytes() == b"\xff\xd8" and not _has_jpeg_end(data):
         raise ImageError(f"the JPEG ends early, after {data.size} bytes: is the link losing data?")
+    size = claimed_size(data[:LONGEST_HEADER].tobytes()) or claimed_size(data.tobytes())
+    if size is None:
+        raise ImageError(
+            f"{data.size} bytes of format {message.format!r} are no JPEG, PNG or TIFF image"
+        )
+    check_size(*size, most)
     # The Exif rotation is left alone: boxes are drawn on the sensor's own pixels.
     flags = cv2.IMREAD_ANYCOLOR | cv2.IMREAD_IGNORE_ORIENTATION
     try:
-        pixels = cv2.imdecode(data, flags) if data.size else None
+        pixels = cv2.imdecode(data, flags)
     except cv2.error:  # a header that claims more pixels than OpenCV takes
         pixels = None
     if pixels is None:
         raise ImageError(
-            f"{data.size} bytes of format {message.format!r} are no JPEG or PNG image"
+            f"{data.size} bytes of format {message.format!r} cannot be decoded: the image is "
+            "damaged, or of a kind that OpenCV does not read"
         )
     return pixels
 
 
-def array_of(message: Image | CompressedImage, white: int = 65535) -> Pixels:
-    """The pixels of either kind of image message; raises ImageError as they do."""
-    return decode(message) if isinstance(message, CompressedImage) else to_array(message, white)
+@dataclass(frozen=True)
+class Reading:
+    """How image messages are read.
+
+    Attributes:
+        white: value of a 16-bit image that becomes 255; everything above is 255 as well.
+        most: px, larger images are refused.
+    """
+
+    white: int = 65535
+    most: float = MOST_PIXELS
+
+
+def array_of(message: Image | CompressedImage, reading: Reading | None = None) -> Pixels:
+    """The pixels of either kind of image message.
+
+    Raises:
+        ImageError: as :func:`decode` and :func:`to_array` do, or the image is too large.
+    """
+    reading = reading or Reading()
+    if isinstance(message, CompressedImage):
+        return decode(message, reading.most)
+    check_size(message.width, message.height, reading.most)
+    return to_array(message, reading.white)
+
+
+def check_size(width: int, height: int, most: float) -> None:
+    """Raise ImageError where an image has more than so many px."""
+    if width * height > most:
+        raise ImageError(
+            f"{width} x {height} px are more than max_megapixels ({most / 1e6:g}): "
+            "send smaller images, or raise it"
+        )
 
 
 def _has_jpeg_end(data: Pixels) -> bool:

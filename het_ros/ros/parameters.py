@@ -9,6 +9,7 @@ from typing import Any, TypeVar
 from rcl_interfaces.msg import FloatingPointRange, IntegerRange, ParameterDescriptor
 from rclpy.node import Node
 
+from het_ros.ros.images import Reading
 from het_ros.tracking.parameter import Parameter, check_parameters, parameter, parameters_of
 
 Configuration = TypeVar("Configuration")
@@ -114,6 +115,11 @@ class NodeConfig:
 
     def __post_init__(self) -> None:
         check_parameters(self)
+
+    @property
+    def reading(self) -> Reading:
+        """How images are read."""
+        return Reading(self.white_level, self.max_megapixels * 1e6)
 
 
 def declare(node: Node, configuration: Configuration) -> None:

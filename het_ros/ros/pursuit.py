@@ -29,7 +29,6 @@ from het_ros.tracking.config import TrackerConfig
 from het_ros.tracking.estimate import Estimate, State
 from het_ros.tracking.target import Witness
 
-MEGA = 1_000_000
 FrameWitness = Callable[[Box, tuple[int, int], Header, int], bool]
 
 
@@ -66,9 +65,7 @@ class Pursuit:
         self._witness = witness
         self._hints = Hints(logger)
         self._gate = StampGate(settings.jump_back)
-        self._ring = FrameRing(
-            settings.ring_seconds, settings.ring_megabytes, settings.white_level
-        )
+        self._ring = FrameRing(settings.ring_seconds, settings.ring_megabytes, settings.reading)
         self._backlog = Backlog()
         self._requests = BoxRequests(self._hints)
         self._published = -1
@@ -119,7 +116,7 @@ class Pursuit:
             return None
         frame = self._requests.image_of(request, self._ring, self.settings.box_tolerance)
         try:
-            pixels = frame.pixels(self.settings.white_level)
+            pixels = frame.pixels(self.settings.reading)
         except ImageError as error:
             raise BoxError(f"its image cannot be read: {error}") from error
         estimate = self._start(frame, pixels, box)
@@ -207,13 +204,7 @@ class Pursuit:
         needed = self._requests.waiting is not None or self.session.running
         if not needed and kind in self._readable:
             return None
-        pixels = frame.pixels(self.settings.white_level)
-        height, width = pixels.shape[:2]
-        if width * height > self.settings.max_megapixels * MEGA:
-            raise ImageError(
-                f"{width} x {height} px are more than max_megapixels "
-                f"({self.settings.max_megapixels:g}): send smaller images, or raise it"
-            )
+        pixels = frame.pixels(self.settings.reading)
         if len(self._readable) < 100:
             self._readable.add(kind)
         return pixels

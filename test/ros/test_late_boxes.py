@@ -56,7 +56,7 @@ def run(pursuit: Pursuit) -> list:
 )
 def test_ring_is_bounded_in_time_and_memory(made_footage, seconds, megabytes, kept, raw):
     frames, _ = made_footage
-    ring = FrameRing(seconds, megabytes, 65535)
+    ring = FrameRing(seconds, megabytes)
     for number, pixels in enumerate(frames):
         ring.add(frame_of(pixels, number))
         assert ring.size <= max(megabytes * 1e6, ring.newest.size)
@@ -69,7 +69,7 @@ def test_ring_is_bounded_in_time_and_memory(made_footage, seconds, megabytes, ke
 
 def test_what_the_ring_keeps_as_jpeg_is_still_the_image(made_footage):
     frames, _ = made_footage
-    ring = FrameRing(10, 0.5, 65535)
+    ring = FrameRing(10, 0.5)
     for number, pixels in enumerate(frames):
         ring.add(frame_of(pixels, number))
     oldest = ring.nearest(0)
@@ -80,7 +80,7 @@ def test_what_the_ring_keeps_as_jpeg_is_still_the_image(made_footage):
 
 
 def test_nearest_and_since(made_footage):
-    ring = FrameRing(10, 10, 65535)
+    ring = FrameRing(10, 10)
     assert ring.nearest(5) is None
     assert ring.newest is None
     for number, pixels in enumerate(made_footage[0][:10]):

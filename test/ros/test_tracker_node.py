@@ -224,6 +224,21 @@ def test_an_image_larger_than_allowed_is_refused(graph, made_footage):
     assert hand.state_of(hand.image(frames[1][:100], 1 + FRAME_TIME)) == "IDLE"
 
 
+def test_a_compressed_image_larger_than_allowed_starts_no_track(graph, made_footage):
+    """Without a track images are not decoded: the box is what meets the large one."""
+    frames, box = made_footage
+    options = {"image_transport": "compressed", "max_megapixels": 0.0193}
+    hand = ByHand(graph, parameter_overrides=[Parameter(k, value=v) for k, v in options.items()])
+    for i, pixels in enumerate((frames[0], cv2.resize(frames[1], (320, 240)))):
+        png = cv2.imencode(".png", pixels)[1].tobytes()
+        header = header_at(1 + i * FRAME_TIME)
+        hand.feed(CompressedImage(format="png", data=png, header=header))
+    assert hand.box(box) == {}
+    assert hand.node.state.value == "IDLE"
+    hand.box(box, 1.0)
+    assert hand.node.state.value == "TRACKING"
+
+
 def test_an_image_of_another_size_loses_the_track(hand, made_footage):
     frames = started(hand, made_footage)
     outputs = hand.image(cv2.resize(frames[3], (80, 60)), 1 + 3 * FRAME_TIME)
