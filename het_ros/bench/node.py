@@ -43,25 +43,36 @@ def node(
         ``added_p95_ms``, the node's own p95 (arrival to publishing) less the core's.
 
     Raises:
-        NodeCaseError: a case could not be measured.
+        NodeCaseError: no case could be measured; one that could not is said and left out.
     """
     names = {f"{size}{rate}": (size, rate) for size in SIZES for rate in RATES}
-    found = {}
+    found: dict[str, Any] = {}
+    failed: list[NodeCaseError] = []
     with tqdm([n for n in names if not only or n in only], desc="node", disable=quiet) as bar:
         for name in bar:
             bar.set_postfix_str(name)
             size, rate = names[name]
             length = FULL_SECONDS if full and name == PROMISED else seconds
             case = (f"--size={'x'.join(map(str, SIZES[size]))}", f"--rate={rate}")
-            # The core before and after, so that a machine that changes meanwhile is noticed less.
-            times = run_case(*case, f"--seconds={seconds / 2}", "--how=core")["times"]
-            two = run_case(*case, f"--seconds={length}", "--how=two")
-            times += run_case(*case, f"--seconds={seconds / 2}", "--how=core")["times"]
-            core = percentiles(times)
-            one = run_case(*case, f"--seconds={seconds}", "--how=one")
-            added = two["own"]["p95_ms"] - core["p95_ms"]
-            found[name] = {**two, "one_process": one, "core": core, "added_p95_ms": added}
+            try:
+                found[name] = _case(case, seconds, length)
+            except NodeCaseError as error:
+                failed.append(error)
+                tqdm.write(f"bench: {name}: {error}", file=sys.stderr)
+    if failed and not found:
+        raise failed[0]
     return found
+
+
+def _case(case: Sequence[str], seconds: float, length: float) -> dict[str, Any]:
+    # The core before and after, so that a machine that changes meanwhile is noticed less.
+    times = run_case(*case, f"--seconds={seconds / 2}", "--how=core")["times"]
+    two = run_case(*case, f"--seconds={length}", "--how=two")
+    times += run_case(*case, f"--seconds={seconds / 2}", "--how=core")["times"]
+    core = percentiles(times)
+    one = run_case(*case, f"--seconds={seconds}", "--how=one")
+    added = two["own"]["p95_ms"] - core["p95_ms"]
+    return {**two, "one_process": one, "core": core, "added_p95_ms": added}
 
 
 def run_case(*arguments: str) -> dict[str, Any]:

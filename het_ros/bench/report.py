@@ -174,7 +174,14 @@ def _start(start: Bench) -> list[str]:
     return [
         "### Start",
         f"{start['seconds']:.2f} s from starting the installed `tracker` until a waiting camera "
-        f"is connected, with {start['rss_mb']:.0f} MB.",
+        f"is connected, with {start['rss_mb']:.0f} MB. What imports add, one after the other:",
+        table(
+            ["import", "s", "MB"],
+            [
+                [f"`{name}`", f"{figures['seconds']:.2f}", f"{figures['rss_mb']:.0f}"]
+                for name, figures in start["imports"].items()
+            ],
+        ),
     ]
 
 

@@ -10,6 +10,7 @@ from het_ros.bench.allocations import peak_of_a_frame
 from het_ros.bench.core import core, sequences_for
 from het_ros.bench.floor import floor, sizes_of
 from het_ros.bench.footage import STEP, Footage
+from het_ros.bench.imports import weigh_imports
 from het_ros.bench.process import usage
 from het_ros.bench.scaling import Case, middle, scaling
 from het_ros.bench.stages import STAGES, stage_times, timed_stages
@@ -56,9 +57,9 @@ def test_sizes_of_the_floor_are_those_of_the_tracker(footage, monkeypatch):
     def look(self, image, centre):
         frame = whole(self, image, centre)
         seen["window"] = frame.window.pixels.shape[:2]
-        seen["cells"] = tuple(side - 1 for side in frame.integrals[0].shape)
+        seen["cells"] = frame.planes[0].shape
         seen["places"] = frame.features.shape[1] * frame.features.shape[2]
-        seen["channels"] = len(frame.integrals)
+        seen["channels"] = len(frame.planes)
         return frame
 
     monkeypatch.setattr(target.Target, "_look", look)
@@ -128,6 +129,20 @@ def test_usage_of_this_process():
     assert after.cpu >= before.cpu > 0
     assert 0 < after.rss_mb <= after.peak_mb
     assert after.threads >= 1
+
+
+def test_a_frame_asks_for_no_large_arrays(footage):
+    """All that it asks for is less than its feature maps, of which there are several copies."""
+    config = TrackerConfig()
+    maps = 4 * config.features * sizes_of(config).places / 1e6
+    assert peak_of_a_frame(config, footage, middle(footage, (40, 40))) < maps
+
+
+def test_imports_are_weighed_one_after_the_other():
+    found = weigh_imports(("json", "numpy"))
+    assert list(found) == ["json", "numpy"]
+    assert all(figures["seconds"] > 0 for figures in found.values())
+    assert found["numpy"]["rss_mb"] > found["json"]["rss_mb"] >= 0
 
 
 def test_more_features_ask_for_more_memory(footage):

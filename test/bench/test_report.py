@@ -4,6 +4,7 @@ import pytest
 
 from het_ros.bench import cli, report
 from het_ros.bench.figures import REQUIRED, lookup
+from het_ros.bench.node import NodeCaseError
 from het_ros.bench.plots import plots
 
 TIMES = {"p50_ms": 2.0, "p95_ms": 3.0, "p99_ms": 4.0}
@@ -39,7 +40,9 @@ def a_bench():
         "scaling": dict.fromkeys(("target", "image", "sub_patches", "features"), curve)
         | {"target_factor": 1.1, "image_factor": 1.6},
         "node": {"1080p30": NODE | {"one_process": NODE, "core": TIMES, "added_p95_ms": 0.5}},
-        "start": {"seconds": 1.5, "rss_mb": 150.0},
+        "start": {
+            "seconds": 1.5, "rss_mb": 150.0, "imports": {"numpy": {"seconds": 0.1, "rss_mb": 9.0}},
+        },
     }  # fmt: skip
 
 
@@ -50,6 +53,7 @@ def test_the_report_tells_what_is_kept_and_what_is_not(tmp_path):
     assert "| p99 over p50 of a frame | 2.50 | at most 2 | **no** |" in text
     assert "| frames dropped at 1080p, 30 frames/s | 1 | at most 0 | **no** |" in text
     assert "Not in this OpenCV: kcf." in text
+    assert "| `numpy` | 0.10 | 9 |" in text
     for name in ("core", "stages", "scaling", "node"):
         assert f"![{name}]({name}.png)" in text
         assert (tmp_path / f"{name}.png").read_bytes().startswith(b"\x89PNG")
@@ -79,6 +83,19 @@ def test_a_run_of_some_parts_writes_what_it_measured(tmp_path):
     assert "node" not in bench
     assert lookup(bench, "core.p50_ms") > 0
     assert "| frames dropped at 1080p, 30 frames/s | - |" in (tmp_path / "report.md").read_text()
+
+
+def test_what_other_parts_measured_stays_when_one_fails(tmp_path, monkeypatch, capsys):
+    def no_node(*_):
+        raise NodeCaseError("no ROS here")
+
+    monkeypatch.setattr(cli, "node", no_node)
+    monkeypatch.setattr(cli, "scaling", lambda *_: a_bench()["scaling"])
+    assert cli.main(["--out", str(tmp_path), "--quick", "--parts", "scaling,node"]) == 2
+    assert "no ROS here" in capsys.readouterr().err
+    bench = json.loads((tmp_path / "bench.json").read_text())
+    assert lookup(bench, "scaling.target_factor") == 1.1
+    assert (tmp_path / "report.md").is_file()
 
 
 def test_what_is_wrong_is_said(tmp_path, capsys):
