@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from het_ros.evaluation.forewarning import forewarning
 from het_ros.evaluation.metrics import overlaps
 from het_ros.evaluation.runs import Run
 
@@ -19,7 +20,7 @@ Truths = Mapping[str, NDArray[np.float64]]
 
 
 def summarise(runs: list[Run], truths: Truths) -> dict[str, Any]:
-    """``state``, ``calibration`` and ``nis``, each only where the tracker speaks of it."""
+    """``state``, ``calibration``, ``forewarning`` and ``nis``, where the tracker speaks of it."""
     found: dict[str, Any] = {}
     pairs = [(run, truths[run.sequence][run.first :]) for run in runs]
     speaking = [(run, truth) for run, truth in pairs if (run.track.states[1:] != "").any()]
@@ -28,6 +29,7 @@ def summarise(runs: list[Run], truths: Truths) -> dict[str, Any]:
     scored = [(run, truth) for run, truth in pairs if np.isfinite(run.track.scores).any()]
     if scored:
         found["calibration"] = calibration(scored)
+        found["forewarning"] = forewarning(scored)
     known = [(run, truth) for run, truth in pairs if np.isfinite(run.track.covariances).any()]
     if known:
         found["nis"] = consistency(known)

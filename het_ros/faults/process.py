@@ -38,9 +38,12 @@ def look(pid: int) -> Sample:
     """What the process ``pid`` holds now.
 
     Raises:
-        OSError: there is no such process, or no /proc (this is not Linux).
+        OSError: there is no such process (any more), or no /proc (this is not Linux).
     """
-    used = usage(pid)
+    try:
+        used = usage(pid)
+    except KeyError:  # it has ended, and nobody has asked for its exit code yet
+        raise ProcessLookupError(f"process {pid} has ended") from None
     folder = Path("/proc") / str(pid)
     return Sample(
         time=time.monotonic(),

@@ -1,0 +1,194 @@
+"""More frames than the installed tracker can process: latency, drops, memory.
+
+First the camera sends as fast as it goes, which tells how many frames a second the tracker can
+process; then three times as many. Newest wins: a frame that is processed was taken when it was
+the newest, so it is answered within two frame times of processing, and all others are counted as
+dropped on /diagnostics.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import os
+import sys
+import tempfile
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import rclpy
+from diagnostic_msgs.msg import DiagnosticArray
+from rclpy.executors import SingleThreadedExecutor
+from rclpy.signals import SignalHandlerOptions
+
+from het_ros.bench.camera import WARM_UP, Camera
+from het_ros.bench.figures import percentiles, plain
+from het_ros.bench.footage import Footage
+from het_ros.bench.scaling import middle
+from het_ros.faults.process import Sample, look
+from het_ros.ros.status import status_values
+from het_ros.tools.tracker_process import TrackerProcess, find_tracker, free_domain
+from het_ros.tools.transport import use_profile
+
+TIMES = 3.0
+PATIENCE = 60.0  # s, for camera and tracker to find each other
+TARGET = (60, 120)  # px
+COUNTED = ("processed", "duplicate", "late", "unreadable", "skipped", "dropped")
+Spin = Callable[[float], None]
+
+EXAMPLE = """example:
+  python -m het_ros.faults.overload --size 640x480 --seconds 20
+"""
+
+
+class CountingCamera(Camera):
+    """A camera that also hears what the tracker counts."""
+
+    def __init__(self, footage: Footage, rate: float) -> None:
+        super().__init__(footage, rate)
+        self.counts: dict[str, int] = {}
+        self.create_subscription(DiagnosticArray, "/diagnostics", self._on_diagnostics, 10)
+
+    def _on_diagnostics(self, message: DiagnosticArray) -> None:
+        values = status_values(message)
+        self.counts = {name: int(values[name]) for name in COUNTED}
+
+    @property
+    def all_sent(self) -> int:
+        """Images, with those of the warm-up."""
+        return len(self._published)
+
+    def sent_from(self, stamp: int) -> int:
+        """Images from that stamp (ns) on."""
+        return sum(sent >= stamp for sent in self._published)
+
+    def send_one(self) -> None:
+        """Publish one more image after the last."""
+        self._publish(self.all_sent)
+
+
+def overload(size: tuple[int, int], seconds: float, parameters: tuple[str, ...]) -> dict[str, Any]:
+    """Measure it.
+
+    Returns:
+        ``capacity`` frames/s, ``times`` so many of it were sent, ``sent``, ``answered``,
+        ``counts`` as on /diagnostics, ``latency_frames``: percentiles of the time from publishing
+        a frame to its box over the time of processing one, ``memory_growth``.
+
+    Raises:
+        TimeoutError, TrackerProcessError: the tracker is not heard, or ended.
+    """
+    footage = Footage(*size, 6)
+    fastest = _capacity(footage, parameters)
+    with _running(footage, TIMES * fastest, parameters) as (camera, spin, pid):
+        before = _run(camera, spin, pid, footage, seconds)
+        after = look(pid)
+        counted = _until_counted(camera, spin)
+        times = np.array([camera.boxes[s] for s in camera.sent if s in camera.boxes])
+        return {
+            "capacity": fastest,
+            "times": len(camera.sent) / (after.time - before.time) / fastest,
+            "sent": camera.all_sent,
+            "answered": len(camera.own),
+            "counts": camera.counts,
+            "all_counted": counted,
+            "latency": percentiles(times),
+            "latency_frames": {
+                f"p{part}": float(np.percentile(times, part) * fastest) for part in (50, 95, 99)
+            },
+            "memory_mb": [before.own_mb, after.own_mb],
+            "memory_growth": after.own_mb / before.own_mb - 1,
+            "load": after.load,
+        }
+
+
+def _capacity(footage: Footage, parameters: tuple[str, ...]) -> float:
+    """Frames a second that are answered when they come as fast as the camera can."""
+    seconds = 2.0
+    with _running(footage, 2000.0, parameters) as (camera, spin, pid):
+        before = _run(camera, spin, pid, footage, seconds)
+        lasted = look(pid).time - before.time
+        return sum(stamp in camera.own for stamp in camera.sent) / lasted
+
+
+def _run(camera: Camera, spin: Spin, pid: int, footage: Footage, seconds: float) -> Sample:
+    """Let the camera run; what the tracker's process held when the counting began."""
+    begun: list[Sample] = []
+    camera.run(seconds, middle(footage, TARGET), spin, lambda: begun.append(look(pid)))
+    camera.finish(spin)
+    return begun[0]
+
+
+def _until_counted(camera: CountingCamera, spin: Spin) -> bool:
+    """Whether /diagnostics accounts for every frame from the first on that came.
+
+    Frames that are lost at the very end leave no gap before a later one; one more frame makes
+    one.
+    """
+    for _ in range(5):
+        camera.send_one()
+        end = time.monotonic() + 1.5
+        while time.monotonic() < end:
+            spin(0.05)
+            if sum(camera.counts.values()) == camera.sent_from(min(camera.own)):
+                return True
+    return False
+
+
+@contextmanager
+def _running(
+    footage: Footage, rate: float, parameters: tuple[str, ...]
+) -> Iterator[tuple[CountingCamera, Spin, int]]:
+    """A tracker and a camera that found each other, in a domain of their own."""
+    os.environ["ROS_DOMAIN_ID"] = str(free_domain())
+    os.environ["ROS_AUTOMATIC_DISCOVERY_RANGE"] = "LOCALHOST"
+    use_profile()
+    given = [word for parameter in parameters for word in ("-p", parameter)]
+    arguments = ["--ros-args", "-p", "diagnostics_period:=0.2", *given]
+    with tempfile.TemporaryDirectory() as folder:
+        log = Path(folder) / "tracker.log"
+        with TrackerProcess(find_tracker(), arguments, log) as tracker:
+            rclpy.init(args=[], signal_handler_options=SignalHandlerOptions.NO)
+            camera, executor = CountingCamera(footage, rate), SingleThreadedExecutor()
+            executor.add_node(camera)
+            try:
+                end = time.monotonic() + PATIENCE
+                while not camera.connected():
+                    tracker.check()
+                    executor.spin_once(timeout_sec=0.05)
+                    if time.monotonic() > end:
+                        raise TimeoutError(f"the tracker is not heard after {PATIENCE:g} s")
+                yield camera, lambda s: executor.spin_once(timeout_sec=s), tracker.pid
+                tracker.check()
+            finally:
+                camera.destroy_node()
+                rclpy.try_shutdown()
+
+
+def main(argv: list[str] | None = None) -> int:
+    """Command line."""
+    p = argparse.ArgumentParser(
+        prog="overload",
+        description=__doc__,
+        epilog=EXAMPLE,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    p.add_argument("--size", default="320x240", help="of the images (320x240)")
+    p.add_argument("--seconds", type=float, default=10.0, help=f"after {WARM_UP:g} s more (10)")
+    p.add_argument(
+        "-p", dest="parameters", action="append", default=[], metavar="NAME:=VALUE",
+        help="a parameter of the tracker",
+    )  # fmt: skip
+    options = p.parse_args(argv)
+    width, height = (int(side) for side in options.size.split("x"))
+    result = overload((width, height), options.seconds, tuple(options.parameters))
+    print(json.dumps(plain(result), indent=1))
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
