@@ -5,8 +5,11 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
+from het_ros.ros.reckoning import Reckoning
 from het_ros.tracking.estimate import State
 from het_ros.tracking.parameter import check_parameters, parameter
+
+LONGEST_PREDICTION = 4.0  # s
 
 
 @dataclass(frozen=True)
@@ -28,7 +31,7 @@ class FollowerConfig:
         0.3, "without news of the target for this long it stops", unit="s", low=0.05, high=0.45
     )
     drive_on: float = parameter(
-        1.5, "while the place is not known it drives on, slower, for this long; 0: it stops",
+        2.0, "a hidden target's place is predicted, and driven to, for this long; 0: it stops",
         unit="s", low=0.0, high=5.0,
     )  # fmt: skip
     rate: float = parameter(20.0, "commands a second", unit="1/s", low=10.0, high=200.0)
@@ -48,8 +51,9 @@ class Follower:
     """Turns towards the target and keeps a distance; stands still when in doubt.
 
     It moves only while fresh statuses say TRACKING or COASTING. Where the target's place is not
-    known, as while it is hidden, it drives on a little, slower and slower: who waits in front
-    of a column sees the target come out far away, or never. All times are s of one clock.
+    known, as while it is hidden, it goes by where the target should be, slower and slower: who
+    waits in front of a column sees the target come out far away, or never. All times are s of one
+    monotonic clock.
     """
 
     def __init__(self, config: FollowerConfig) -> None:
@@ -58,9 +62,8 @@ class Follower:
         self._heard = -math.inf
         self._bearing = 0.0
         self._aimed = -math.inf
-        self._away = 0.0
         self._placed = -math.inf
-        self._speed = 0.0  # m/s, the last that was due to a known place
+        self._reckoning = Reckoning()
 
     def on_status(self, state: State, now: float) -> None:
         """Take the state of the track."""
@@ -78,34 +81,46 @@ class Follower:
             self.on_bearing((x - half) / half * slope, 1.0, now)
 
     def on_place(self, x: float, z: float, now: float) -> None:
-        """Take how far away the target is, m to the right and forward."""
-        self._away, self._placed = math.hypot(x, z), now
+        """Take where the target is, m to the right and forward."""
+        self._placed = now
+        self._reckoning.seen(x, z, now)
 
     def command(self, now: float) -> tuple[float, float]:
-        """(m/s forward, rad/s to the left) at a time; (0, 0) when in doubt."""
-        config = self.config
+        """(m/s forward, rad/s to the left) from now on; (0, 0) when in doubt."""
+        linear, angular = self._wanted(now)
+        self._reckoning.told(linear, angular, now)
+        return linear, angular
+
+    def _wanted(self, now: float) -> tuple[float, float]:
+        config, unknown_for = self.config, now - self._placed
         if now - self._heard > config.timeout or self._state not in (
             State.TRACKING,
             State.COASTING,
         ):
             return 0.0, 0.0
-        angular = 0.0
-        if now - self._aimed <= config.timeout:
-            angular = _limited(-config.turn_gain * self._bearing, config.max_angular)
-        return self._drive(now), angular
+        aimed = now - self._aimed <= config.timeout
+        bearing = self._bearing if aimed else 0.0
+        if unknown_for > LONGEST_PREDICTION:
+            return 0.0, self._turn(bearing)
+        x, z = self._reckoning.predicted(now)
+        if self._state is State.COASTING:
+            bearing = math.atan2(x, z)
+        return self._speed(math.hypot(x, z), bearing, unknown_for), self._turn(bearing)
 
-    def _drive(self, now: float) -> float:
-        """The speed forward, m/s."""
-        config, unknown_for = self.config, now - self._placed
-        if self._state is State.TRACKING and unknown_for <= config.timeout:
-            # Turn first, then drive: a target at the side is no place to drive to.
-            ahead = max(math.cos(self._bearing), 0.0)
-            wanted = config.drive_gain * (self._away - config.distance) * ahead
-            self._speed = _limited(wanted, config.max_linear)
-            return self._speed
+    def _turn(self, bearing: float) -> float:
+        return _limited(-self.config.turn_gain * bearing, self.config.max_angular)
+
+    def _speed(self, away: float, bearing: float, unknown_for: float) -> float:
+        """The speed to a target so far away (m), whose place has been unknown for so long (s)."""
+        config = self.config
+        # Turn first, then drive: a target at the side is no place to drive to.
+        ahead = max(math.cos(bearing), 0.0)
+        speed = _limited(config.drive_gain * (away - config.distance) * ahead, config.max_linear)
+        if unknown_for <= config.timeout:
+            return speed
         if unknown_for >= config.drive_on:
             return 0.0
-        return max(self._speed, 0.0) * (1 - unknown_for / config.drive_on)
+        return speed * (1 - unknown_for / config.drive_on)
 
 
 def _limited(value: float, most: float) -> float:

@@ -33,9 +33,11 @@ from het_ros.scene import CameraState, Frame, Scene, SceneConfig
 from het_ros.tools.drawing import annotate
 from het_ros.tools.results import Row
 from het_ros.tools.video import VideoWriter
+from het_ros.tracking.config import TrackerConfig
 from het_ros.tracking.estimate import State
 
 FAR = 30.0  # m, depth of the street behind all
+LOST_AFTER = 4.0  # s: the robot waits so long for who went behind a column
 FASTEST = 1.2  # m/s: a robot slower than who it follows loses them
 START = 1_000_000_000  # ns, stamp of the first image: 0 would mean "no stamp"
 
@@ -50,6 +52,7 @@ class Moment:
         away: distance from the robot to the figure, m.
         command: (m/s forward, rad/s to the left).
         in_view: whether the figure is in the camera's view, hidden or not.
+        clearance: from the robot to the nearest column's surface, m.
     """
 
     frame: Frame
@@ -57,6 +60,7 @@ class Moment:
     away: float
     command: tuple[float, float]
     in_view: bool
+    clearance: float
 
 
 class Loop:
@@ -77,7 +81,9 @@ class Loop:
         self._time = 0.0
         self._outputs: dict[str, Any] = {}
         self.tracker = TrackerNode(
-            context=context, tap=lambda topic, message: self._outputs.update({topic: message})
+            context=context,
+            config=TrackerConfig(lost_after=LOST_AFTER),
+            tap=lambda topic, message: self._outputs.update({topic: message}),
         )
         self._follower = FollowerNode(
             clock=lambda: self._time,
@@ -112,7 +118,14 @@ class Loop:
             if topic in self._outputs:
                 getattr(self._follower, f"on_{topic}")(self._outputs[topic])
         command = self._follower.tick()
-        moment = Moment(frame, self._row(header), self._away(), command, self._in_view(frame))
+        moment = Moment(
+            frame=frame,
+            row=self._row(header),
+            away=self._away(),
+            command=command,
+            in_view=self._in_view(frame),
+            clearance=self._clearance(),
+        )
         self._move(*command)
         return moment
 
@@ -173,6 +186,12 @@ class Loop:
     def _away(self) -> float:
         x, z = self.scene.target_at(self._time)
         return math.hypot(x - self.robot.x, z - self.robot.z)
+
+    def _clearance(self) -> float:
+        return min(
+            math.hypot(column.x - self.robot.x, column.z - self.robot.z) - column.width / 2
+            for column in self.scene.story.columns
+        )
 
     def _in_view(self, frame: Frame) -> bool:
         lens = self.scene.lens

@@ -1,4 +1,5 @@
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -61,26 +62,35 @@ def test_stops_within_half_a_second_of_silence():
 
 
 def test_drives_on_slower_and_slower_while_the_target_is_hidden():
-    follower = following(bearing=0.0, away=5.0)
+    follower = following(bearing=0.2, away=9.0)
     speeds = [follower.command(0.0)[0]]
     for i in range(1, 21):
         now = i * CONFIG.drive_on / 16
         follower.on_status(State.COASTING, now)
-        follower.on_bearing(0.3, 1.0, now)
         linear, angular = follower.command(now)
         assert angular < 0
         speeds.append(linear)
     assert speeds[0] == CONFIG.max_linear
     assert speeds == sorted(speeds, reverse=True)
     assert speeds[-5:] == [0.0] * 5
-    assert speeds[2] > 0
+    assert speeds[3] > 0
 
 
-def test_does_not_drive_backwards_without_seeing_the_target():
-    follower = following(away=0.5)
-    assert follower.command(0.0)[0] < 0
-    follower.on_status(State.COASTING, 0.1)
-    assert follower.command(0.1)[0] == 0
+def test_a_hidden_target_that_walks_on_is_met_where_it_comes_out():
+    """It walks 0.8 m/s to the right, 4 m before a robot that may only turn."""
+    follower, yaw, dt = Follower(replace(CONFIG, drive_gain=0.0)), 0.0, 0.05
+    for i in range(80):
+        now = i * dt
+        bearing = math.atan2(0.8 * now, 4.0) - yaw
+        hidden = i >= 40
+        follower.on_status(State.COASTING if hidden else State.TRACKING, now)
+        follower.on_bearing(0.0 if hidden else math.sin(bearing), math.cos(bearing), now)
+        if not hidden:
+            away = math.hypot(0.8 * now, 4.0)
+            follower.on_place(away * math.sin(bearing), away * math.cos(bearing), now)
+        _, angular = follower.command(now)
+        yaw -= angular * dt
+    assert abs(bearing) < 0.15
 
 
 def test_turns_only_without_a_place():
