@@ -1,8 +1,8 @@
 """Run every fuzz test in turns until the time is up, and keep what fails: `make fuzz MINUTES=n`.
 
 Each turn is a pytest process of its own, so that a crash of a library is a failure of that turn
-and not the end of the run. A test that failed gets no more turns; the next run with the same folder
-tries what failed before anything new.
+and not the end of the run. A test that failed gets no more turns; the next run with the same
+folder tries what failed before anything new.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ import subprocess
 import sys
 import time
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 
 from tqdm import tqdm
@@ -32,13 +32,21 @@ EXAMPLE = """example:
 
 @dataclass
 class Machine:
-    """One fuzz test and what came of it."""
+    """One fuzz test and what came of it.
+
+    Attributes:
+        name: pytest's name of it.
+        cases: inputs that were tried.
+        seconds: how long that took.
+        turns: in so many processes.
+        kept: log of the failure, if there was one.
+    """
 
     name: str
     cases: int = 0
     seconds: float = 0.0
     turns: int = 0
-    failure: Path | None = None
+    kept: list[Path] = field(default_factory=list)
 
     @property
     def weight(self) -> int:
@@ -88,9 +96,9 @@ def run_turn(machine: Machine, cases: int, out: Path) -> None:
     machine.cases += sum(json.loads(count.read_text()).values()) if count.exists() else 0
     if code:
         name = machine.name.partition("::")[2].replace("::", ".")
-        machine.failure = out / f"{name}.txt"
+        machine.kept.append(out / f"{name}.txt")
         lines = [f"exit code {code}", *log.read_text(errors="replace").splitlines()]
-        machine.failure.write_text("\n".join(line[:MOST_LINE] for line in lines) + "\n")
+        machine.kept[-1].write_text("\n".join(line[:MOST_LINE] for line in lines) + "\n")
     log.unlink()
 
 
@@ -102,7 +110,7 @@ def run(minutes: float, out: Path) -> list[Machine]:
     begin = time.monotonic()
     with tqdm(total=round(60 * minutes), unit="s", desc="fuzz") as progress:
         while (passed := time.monotonic() - begin) < 60 * minutes:
-            sound = [machine for machine in every if machine.failure is None]
+            sound = [machine for machine in every if not machine.kept]
             if not sound:
                 break
             machine = min(sound, key=lambda m: m.turns / m.weight)
@@ -117,10 +125,10 @@ def report(every: Sequence[Machine]) -> str:
     """Markdown table: test, cases tried, seconds, whether it failed."""
     rows = ["| what | cases | s | failed |", "|---|---|---|---|"]
     rows += [
-        f"| {m.name.rpartition('/')[2]} | {m.cases} | {m.seconds:.0f} | {int(m.failure is not None)} |"
+        f"| {m.name.rpartition('/')[2]} | {m.cases} | {m.seconds:.0f} | {len(m.kept)} |"
         for m in every
     ]
-    failed = sum(m.failure is not None for m in every)
+    failed = sum(len(m.kept) for m in every)
     total = (sum(m.cases for m in every), sum(m.seconds for m in every))
     return "\n".join([*rows, f"| all | {total[0]} | {total[1]:.0f} | {failed} |"])
 
@@ -143,9 +151,9 @@ def main(argv: Sequence[str] | None = None) -> int:
     table = report(every)
     (options.out / "report.md").write_text(table + "\n")
     print(table)
-    failed = [machine for machine in every if machine.failure]
+    failed = [machine for machine in every if machine.kept]
     for machine in failed:
-        print(f"failed: {machine.name}: {machine.failure}")
+        print(f"failed: {machine.name}: {machine.kept[0]}")
     return int(bool(failed))
 
 
