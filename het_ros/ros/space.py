@@ -12,7 +12,7 @@ from std_msgs.msg import Header
 
 from het_ros.ros.depth import DepthError, metres_of, pose_at
 from het_ros.ros.hints import Hints
-from het_ros.ros.images import ImageError
+from het_ros.ros.images import ImageError, check_size
 from het_ros.ros.messages import stamp_ns
 from het_ros.ros.optics import CameraError, bearing_message, ray_of
 from het_ros.ros.parameters import NodeConfig
@@ -47,7 +47,14 @@ class Space:
         self._info = message
 
     def on_depth(self, message: Image) -> None:
-        """Keep a depth image."""
+        """Keep a depth image, unless it is larger than images may be."""
+        try:
+            # What is kept is the data, whatever size the message claims: 4 bytes make a px.
+            check_size(message.width, message.height, self.settings.reading.most)
+            check_size(len(message.data) // 4, 1, self.settings.reading.most)
+        except ImageError as error:
+            self._hints.once("depth size", f"depth image refused: {error}")
+            return
         self._depths.append(message)
 
     def bearing(self, box: Box, size: tuple[int, int], header: Header) -> Vector3Stamped | None:
