@@ -35,6 +35,7 @@ from het_ros.tools.tracker_process import TrackerProcess, find_tracker, free_dom
 from het_ros.tools.transport import use_profile
 
 TIMES = 3.0
+FASTEST = 600.0  # frames/s to find out what the tracker can
 PATIENCE = 60.0  # s, for camera and tracker to find each other
 TARGET = (60, 120)  # px
 COUNTED = ("processed", "duplicate", "late", "unreadable", "skipped", "dropped")
@@ -108,8 +109,8 @@ def overload(size: tuple[int, int], seconds: float, parameters: tuple[str, ...])
 
 def _capacity(footage: Footage, parameters: tuple[str, ...]) -> float:
     """Frames a second that are answered when they come as fast as the camera can."""
-    seconds = 2.0
-    with _running(footage, 2000.0, parameters) as (camera, spin, pid):
+    seconds = 0.5
+    with _running(footage, FASTEST, parameters) as (camera, spin, pid):
         before = _run(camera, spin, pid, footage, seconds)
         lasted = look(pid).time - before.time
         return sum(stamp in camera.own for stamp in camera.sent) / lasted

@@ -1,8 +1,13 @@
-"""Log lines that help once and then keep quiet."""
+"""Log lines that help once, or some times, and then keep quiet."""
 
 from __future__ import annotations
 
+import time
+from collections import deque
+from collections.abc import Callable
 from typing import Any
+
+MOST_LINES, RATION_SECONDS = 20, 10.0
 
 
 class Hints:
@@ -24,3 +29,35 @@ class Hints:
     def forget(self, key: str) -> None:
         """Let the key be heard again."""
         self._given.discard(key)
+
+
+class Ration:
+    """Lets lines into the log so seldom that a flood of what others bring about fills no disk.
+
+    Args:
+        most: lines in any ``seconds``; what comes beyond is counted, and told with the next line.
+        seconds: s.
+        clock: monotonic, s.
+    """
+
+    def __init__(
+        self,
+        most: int = MOST_LINES,
+        seconds: float = RATION_SECONDS,
+        clock: Callable[[], float] = time.monotonic,
+    ) -> None:
+        self._seconds = seconds
+        self._clock = clock
+        self._logged: deque[float] = deque(maxlen=most)
+        self._kept_back = 0
+
+    def line(self, text: str) -> str:
+        """What is to be logged now; empty where nothing is."""
+        now = self._clock()
+        if len(self._logged) == self._logged.maxlen and now - self._logged[0] < self._seconds:
+            self._kept_back += 1
+            return ""
+        self._logged.append(now)
+        more = f" ({self._kept_back} more like it were not logged)" if self._kept_back else ""
+        self._kept_back = 0
+        return f"{text}{more}"

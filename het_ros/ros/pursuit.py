@@ -17,8 +17,8 @@ from std_msgs.msg import Header
 from het_ros.ros.backlog import Backlog
 from het_ros.ros.box_requests import BoxRequests, Request
 from het_ros.ros.frames import Frame, FrameRing
-from het_ros.ros.hints import Hints
-from het_ros.ros.images import ImageError, Pixels
+from het_ros.ros.hints import Hints, Ration
+from het_ros.ros.images import ENCODINGS, ImageError, Pixels
 from het_ros.ros.messages import BoxError
 from het_ros.ros.outcome import Outcome
 from het_ros.ros.parameters import NodeConfig
@@ -64,6 +64,7 @@ class Pursuit:
         self._logger = logger
         self._witness = witness
         self._hints = Hints(logger)
+        self._starts, self._refusals = Ration(), Ration()
         self._gate = StampGate(settings.jump_back)
         self._ring = FrameRing(settings.ring_seconds, settings.ring_megabytes, settings.reading)
         self._backlog = Backlog()
@@ -148,7 +149,8 @@ class Pursuit:
     def refuse(self, why: object) -> None:
         """Log that a box was refused, and that nothing else has changed."""
         goes_on = "; the running track goes on" if self.session.running else ""
-        self._logger.warning(f"init box refused: {why}{goes_on}")
+        if line := self._refusals.line(f"init box refused: {why}{goes_on}"):
+            self._logger.warning(line)
 
     def _started(self, frame: Frame, pixels: Pixels) -> Estimate | None:
         """Start the box that waits for this frame; None where none does or it is refused."""
@@ -167,7 +169,8 @@ class Pursuit:
             wrong = str(error) if isinstance(error, ValueError) else f"internal error: {error!r}"
             raise BoxError(wrong) from error
         self.track += 1
-        self._logger.info(f"tracking started on {box}")
+        if line := self._starts.line(f"tracking started on {box}"):
+            self._logger.info(line)
         return estimate
 
     def _followed(self, frame: Frame, pixels: Pixels) -> Estimate | None:
@@ -213,7 +216,9 @@ class Pursuit:
         self.counts["unreadable"] += 1
         self._ring.remove(frame)
         encoding = getattr(frame.message, "encoding", "compressed")
-        self._hints.once(f"image {encoding}", f"image refused: {error}")
+        # Names that senders make up are one kind of fault: each of its own would be kept for ever.
+        kind = encoding if encoding in ENCODINGS else "unknown"
+        self._hints.once(f"image {kind}", f"image refused: {error}")
 
     def _jump_back(self) -> None:
         """Time went back: what was learnt of motion does not hold, and old frames are void."""

@@ -40,6 +40,7 @@ def tracker_of_the_module(tmp_path_factory):
             opened.append(Graph())
             return opened[1], log
 
+        start.pid = lambda: opened[0].pid
         yield start
         if opened:
             tracker, graph = opened

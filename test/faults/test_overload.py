@@ -1,0 +1,30 @@
+"""Three times as many frames as the installed tracker can process."""
+
+import os
+
+import pytest
+from conftest import EXECUTABLES
+
+from het_ros.faults.overload import overload
+
+
+@pytest.fixture
+def environment():
+    """The measurement chooses a domain for its process: take that back."""
+    before = dict(os.environ)
+    yield
+    os.environ.clear()
+    os.environ.update(before)
+
+
+def test_newest_wins_and_every_other_frame_is_counted(environment):
+    if not (EXECUTABLES / "tracker").exists():
+        pytest.skip("nothing installed: run `make build`, and source install/setup.bash")
+    measured = overload((320, 240), 1.5, ())
+    assert measured["times"] > 1.5  # of what it can process; 3 where the camera gets there
+    assert measured["answered"] < measured["sent"]
+    # Every frame from the first on was processed or counted as dropped.
+    assert measured["all_counted"] and measured["counts"]["dropped"] > 0
+    # In frame times of processing, so that it does not depend on how fast the machine is.
+    assert measured["latency_frames"]["p50"] < 2
+    assert measured["memory_growth"] < 0.1
