@@ -91,6 +91,7 @@ class Loop:
             parameter_overrides=[
                 Parameter("distance", value=distance),
                 Parameter("max_linear", value=FASTEST),
+                Parameter("drive_on", value=LOST_AFTER),
             ],
         )
 

@@ -1,14 +1,17 @@
 """Outputs that need more than an image: bearing, place, detections, debug image, diagnostics."""
 
+from dataclasses import dataclass, field
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
+from geometry_msgs.msg import PoseWithCovariance
 from rclpy.node import Node
 from rclpy.parameter import Parameter
 from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 from sensor_msgs.msg import CameraInfo, Image
+from std_msgs.msg import Header
 
 from het_ros import Box, Estimate, State
 from het_ros.ros import answers, tracker_node
@@ -104,32 +107,73 @@ def test_no_bearing_without_calibration(graph, made_footage):
     assert "bearing" not in hand.image(frames[1], 1 + FRAME_TIME)
 
 
-class Part(SimpleNamespace):
-    """A stand-in for any vision_msgs message: attributes made as they are asked for."""
-
-    def __getattr__(self, name):
-        if name.startswith("__"):
-            raise AttributeError(name)
-        value = Part()
-        setattr(self, name, value)
-        return value
+@dataclass(slots=True)
+class Point2D:
+    x: float = 0.0
+    y: float = 0.0
 
 
-def vision(name):
-    return SimpleNamespace(
-        BoundingBox2D=Part, ObjectHypothesisWithPose=Part, Detection2D=Part, Detection2DArray=Part
-    ) if name else None  # fmt: skip
+@dataclass(slots=True)
+class Pose2D:
+    position: Point2D = field(default_factory=Point2D)
+    theta: float = 0.0
 
 
-def test_detections_as_vision_msgs_has_them():
+@dataclass(slots=True)
+class BoundingBox2D:
+    center: Pose2D = field(default_factory=Pose2D)
+    size_x: float = 0.0
+    size_y: float = 0.0
+
+
+@dataclass(slots=True)
+class ObjectHypothesis:
+    class_id: str = ""
+    score: float = 0.0
+
+
+@dataclass(slots=True)
+class ObjectHypothesisWithPose:
+    hypothesis: ObjectHypothesis = field(default_factory=ObjectHypothesis)
+    pose: PoseWithCovariance = field(default_factory=PoseWithCovariance)
+
+
+@dataclass(slots=True)
+class Detection2D:
+    header: Header = field(default_factory=Header)
+    results: list = field(default_factory=list)
+    bbox: BoundingBox2D = field(default_factory=BoundingBox2D)
+    id: str = ""
+
+
+@dataclass(slots=True)
+class Detection2DArray:
+    header: Header = field(default_factory=Header)
+    detections: list = field(default_factory=list)
+
+
+# vision_msgs 4 (Jazzy) as far as it is used: a field that it does not have cannot be set.
+VISION = SimpleNamespace(
+    BoundingBox2D=BoundingBox2D,
+    ObjectHypothesisWithPose=ObjectHypothesisWithPose,
+    Detection2D=Detection2D,
+    Detection2DArray=Detection2DArray,
+)
+
+
+@pytest.mark.parametrize("vision", [VISION, tracker_node.vision_msgs], ids=["stand-in", "real"])
+def test_detections_as_vision_msgs_has_them(vision):
+    if vision is None:
+        pytest.skip("vision_msgs is not on PyPI: apt's ROS has it")
     estimate = Estimate(Box(10, 20, 30, 40), (0.0, 0.0), np.eye(4), 0.75, State.TRACKING)
-    message = detections_message(estimate, 3, header_at(1.0), vision("vision_msgs"))
+    message = detections_message(estimate, 3, header_at(1.0), vision)
     (detection,) = message.detections
     assert message.header == detection.header == header_at(1.0)
     assert (detection.bbox.center.position.x, detection.bbox.center.position.y) == (25, 40)
     assert (detection.bbox.size_x, detection.bbox.size_y) == (30, 40)
     assert detection.id == "3"
     assert detection.results[0].hypothesis.score == 0.75
+    assert detection.results[0].hypothesis.class_id == "target"
 
 
 def test_the_id_is_the_tracks(hand, made_footage, monkeypatch):
