@@ -215,6 +215,15 @@ def test_an_unreadable_image_is_left_out(hand, made_footage, spoil):
     assert hand.state_of(hand.image(frames[4], 1 + 4 * FRAME_TIME)) == "TRACKING"
 
 
+def test_encodings_that_are_made_up_are_told_once(hand, made_footage, capfd):
+    frames, _ = made_footage
+    for i in range(50):
+        image = image_message(frames[0], header_at(1 + i * FRAME_TIME))
+        image.encoding = f"invented{i}"
+        hand.feed(image)
+    assert capfd.readouterr().err.count("image refused") == 1
+
+
 def test_an_image_larger_than_allowed_is_refused(graph, made_footage):
     frames, _ = made_footage
     limit = Parameter("max_megapixels", value=0.019)  # the frames have 0.0192
