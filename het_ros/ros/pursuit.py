@@ -64,7 +64,7 @@ class Pursuit:
         self._logger = logger
         self._witness = witness
         self._hints = Hints(logger)
-        self._starts, self._refusals = Ration(), Ration()
+        self._starts, self._refusals, self._ends = Ration(), Ration(), Ration()
         self._gate = StampGate(settings.jump_back)
         self._ring = FrameRing(settings.ring_seconds, settings.ring_megabytes, settings.reading)
         self._backlog = Backlog()
@@ -185,7 +185,7 @@ class Pursuit:
             self.session.lose(f"internal error: {error!r}")
             return None
         if self.session.state is State.LOST and before is not State.LOST:
-            self._logger.warning(f"target lost: {self.session.reason}")
+            self._warn_of_end(f"target lost: {self.session.reason}")
         return estimate
 
     def _witness_of(self, frame: Frame, pixels: Pixels) -> Witness | None:
@@ -220,9 +220,14 @@ class Pursuit:
         kind = encoding if encoding in ENCODINGS else "unknown"
         self._hints.once(f"image {kind}", f"image refused: {error}")
 
+    def _warn_of_end(self, text: str) -> None:
+        """Log why a track ended; not every time where stamps or cameras take turns."""
+        if line := self._ends.line(text):
+            self._logger.warning(line)
+
     def _jump_back(self) -> None:
         """Time went back: what was learnt of motion does not hold, and old frames are void."""
-        self._logger.warning("the stamps jumped back (a bag in a loop?): the track is reset")
+        self._warn_of_end("the stamps jumped back (a bag in a loop?): the track is reset")
         self.session.drop("time jumped back")
         self._requests.jump_back()
         self._ring.clear()

@@ -224,6 +224,13 @@ def test_encodings_that_are_made_up_are_told_once(hand, made_footage, capfd):
     assert capfd.readouterr().err.count("image refused") == 1
 
 
+def test_stamps_that_jump_for_ever_do_not_fill_the_log(hand, made_footage, capfd):
+    frames, _ = made_footage
+    for i in range(200):
+        hand.image(frames[0], 10.0 if i % 2 else 20.0)
+    assert 0 < capfd.readouterr().err.count("jumped back") <= 20
+
+
 def test_an_image_larger_than_allowed_is_refused(graph, made_footage):
     frames, _ = made_footage
     limit = Parameter("max_megapixels", value=0.019)  # the frames have 0.0192
