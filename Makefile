@@ -22,7 +22,7 @@ WORKSPACE := $(ROS); source install/setup.bash
 PEERS_SPACE := $(CLEAN); source $(PEERS)/bin/activate; export AMENT_PREFIX_PATH="$$VIRTUAL_ENV"; \
 	source install/setup.bash
 
-.PHONY: help setup build run test test-oldest fuzz evaluate bench docs format clean
+.PHONY: help setup build run test test-oldest fuzz faults soak evaluate bench docs format clean
 
 help: ## What there is to make
 	@grep -E '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:[^#]*## /\t/' | expand -t 14
@@ -32,6 +32,7 @@ help: ## What there is to make
 	@echo '     [PROTOCOL=ope|tre|sre|realtime|restart] [SEQUENCES=a,b] [SCHEDULER=tcp://host:8786]'
 	@echo 'make bench [OUT=out/bench] [DATA=folder]'
 	@echo 'make fuzz [MINUTES=10] [OUT=out/fuzz]'
+	@echo 'make soak [MINUTES=60] [OUT=out/soak] [SOAK="--size 1280x720 -p seed:=3"]'
 
 # Set-up -------------------------------------------------------------------------------------
 
@@ -95,11 +96,18 @@ test-oldest: $(OLDEST)/.ready ## Core, conversions and node with NumPy 1.26 and 
 		python -c 'import cv2, numpy; print("NumPy", numpy.__version__, "OpenCV", cv2.__version__)'; \
 		python -m pytest -p no:cacheprovider $(OLDEST_TESTS) $(PYTEST)
 
-MINUTES ?= 10
-
+fuzz: MINUTES = 10
 fuzz: OUT ?= out/fuzz
 fuzz: $(BUILT) ## Random input for MINUTES=10: what breaks something is kept in out/fuzz
 	@$(WORKSPACE); python test/fuzz/campaign.py --minutes $(MINUTES) --out '$(OUT)'
+
+faults: $(BUILT) ## The faults that take minutes: a pulled cable (as root), a hundred signals
+	@$(WORKSPACE); python -m pytest -m slow test/faults -s $(PYTEST)
+
+soak: MINUTES = 60
+soak: OUT ?= out/soak
+soak: $(BUILT) ## The tracker for MINUTES=60 at 30 frames/s: memory, latency, files; passes or fails
+	@$(WORKSPACE); python -m het_ros.faults.soak --minutes $(MINUTES) --out '$(OUT)' $(SOAK)
 
 DATA ?=
 PEER_OPTIONS = $(if $(TRACKERS),--trackers '$(TRACKERS)') $(if $(SEEDS),--seeds $(SEEDS)) \
