@@ -1,3 +1,5 @@
+# Copyright 2026 het_ros maintainers
+# SPDX-License-Identifier: Apache-2.0
 """Installed by colcon as an ament_python package; ``pip install .`` works as well."""
 
 from pathlib import Path

@@ -1,3 +1,5 @@
+# Copyright 2026 het_ros maintainers
+# SPDX-License-Identifier: Apache-2.0
 """het_ros: follow one target on a camera stream, and say so when it is lost."""
 
 from het_ros.tracking.box import Box

@@ -1,3 +1,5 @@
+# Copyright 2026 het_ros maintainers
+# SPDX-License-Identifier: Apache-2.0
 """Start a tracker on a camera: ros2 launch het_ros tracker.launch.py camera:=/camera/image_raw."""
 
 from launch import LaunchDescription

@@ -1,3 +1,5 @@
+# Copyright 2026 het_ros maintainers
+# SPDX-License-Identifier: Apache-2.0
 """What tests of several packages share: real footage, made footage, a graph of nodes, a process.
 
 ROS is imported where it is used only, so that the core's tests run without it.

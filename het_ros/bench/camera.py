@@ -1,3 +1,5 @@
+# Copyright 2026 het_ros maintainers
+# SPDX-License-Identifier: Apache-2.0
 """A camera at a steady rate, and the answers that come back to it."""
 
 from __future__ import annotations

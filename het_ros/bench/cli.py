@@ -1,3 +1,5 @@
+# Copyright 2026 het_ros maintainers
+# SPDX-License-Identifier: Apache-2.0
 """``make bench``: everything in one run, to bench.json, a report and the documentation."""
 
 from __future__ import annotations

@@ -1,3 +1,5 @@
+# Copyright 2026 het_ros maintainers
+# SPDX-License-Identifier: Apache-2.0
 """The arithmetic of the bench: percentiles, ratios, exponents; and which figures there must be."""
 
 from __future__ import annotations

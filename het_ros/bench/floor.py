@@ -1,3 +1,5 @@
+# Copyright 2026 het_ros maintainers
+# SPDX-License-Identifier: Apache-2.0
 """The floor: what no tracker of this kind can leave out, timed alone at the same sizes.
 
 It reads the search window once, makes the integral images of its channels, and does one matrix

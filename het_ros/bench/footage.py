@@ -1,3 +1,5 @@
+# Copyright 2026 het_ros maintainers
+# SPDX-License-Identifier: Apache-2.0
 """Made frames of any size: a texture with detail at every scale that moves past the camera."""
 
 from __future__ import annotations

@@ -1,3 +1,5 @@
+# Copyright 2026 het_ros maintainers
+# SPDX-License-Identifier: Apache-2.0
 """What the imports of the node take of its start: seconds and memory, in a fresh process."""
 
 from __future__ import annotations

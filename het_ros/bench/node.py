@@ -1,3 +1,5 @@
+# Copyright 2026 het_ros maintainers
+# SPDX-License-Identifier: Apache-2.0
 """The node: image to box at several sizes and rates, each case in processes of its own."""
 
 from __future__ import annotations

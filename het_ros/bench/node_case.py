@@ -1,3 +1,5 @@
+# Copyright 2026 het_ros maintainers
+# SPDX-License-Identifier: Apache-2.0
 """One case of the node's bench, in a process of its own: size, rate, and where the tracker is.
 
 Prints one JSON object; ``het_ros.bench.node`` starts it and reads that.

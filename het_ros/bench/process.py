@@ -1,3 +1,5 @@
+# Copyright 2026 het_ros maintainers
+# SPDX-License-Identifier: Apache-2.0
 """What a process takes of the machine: processor time and memory, as Linux counts them."""
 
 from __future__ import annotations

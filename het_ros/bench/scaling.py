@@ -1,3 +1,5 @@
+# Copyright 2026 het_ros maintainers
+# SPDX-License-Identifier: Apache-2.0
 """How the cost of a frame grows with the target, the image, Q and the number of features."""
 
 from __future__ import annotations

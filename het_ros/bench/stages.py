@@ -1,3 +1,5 @@
+# Copyright 2026 het_ros maintainers
+# SPDX-License-Identifier: Apache-2.0
 """Where a frame's time goes: the calls of one frame, timed by stage."""
 
 from __future__ import annotations

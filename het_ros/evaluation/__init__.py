@@ -1,3 +1,5 @@
+# Copyright 2026 het_ros maintainers
+# SPDX-License-Identifier: Apache-2.0
 """Figures that anyone can trust: trackers, sequences, protocols, scores and reports.
 
 The way of a run: ``readers`` find the sequences, ``trackers`` build what is compared,

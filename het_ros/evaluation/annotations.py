@@ -1,3 +1,5 @@
+# Copyright 2026 het_ros maintainers
+# SPDX-License-Identifier: Apache-2.0
 """Lines of ground truth: boxes, polygons, masks and absent targets as one array of boxes."""
 
 from __future__ import annotations

@@ -1,3 +1,5 @@
+# Copyright 2026 het_ros maintainers
+# SPDX-License-Identifier: Apache-2.0
 """What a tracker says of one frame, and of a whole run."""
 
 from __future__ import annotations

@@ -1,3 +1,5 @@
+# Copyright 2026 het_ros maintainers
+# SPDX-License-Identifier: Apache-2.0
 """Results of runs on disk, so that nothing is run twice and an interrupted run goes on."""
 
 from __future__ import annotations

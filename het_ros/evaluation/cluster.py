@@ -1,3 +1,5 @@
+# Copyright 2026 het_ros maintainers
+# SPDX-License-Identifier: Apache-2.0
 """A Dask cluster for joblib, checked before jobs are sent to it."""
 
 from __future__ import annotations

@@ -1,3 +1,5 @@
+# Copyright 2026 het_ros maintainers
+# SPDX-License-Identifier: Apache-2.0
 """Does the score fall before the box goes wrong? Failures, and when each was told."""
 
 from __future__ import annotations

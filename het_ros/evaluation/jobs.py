@@ -1,3 +1,5 @@
+# Copyright 2026 het_ros maintainers
+# SPDX-License-Identifier: Apache-2.0
 """One run as a job that can be sent away, and how many of them are carried out."""
 
 from __future__ import annotations

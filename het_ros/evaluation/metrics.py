@@ -1,3 +1,5 @@
+# Copyright 2026 het_ros maintainers
+# SPDX-License-Identifier: Apache-2.0
 """Scores of boxes against the ground truth, as the OTB benchmark defines them."""
 
 from __future__ import annotations

@@ -1,3 +1,5 @@
+# Copyright 2026 het_ros maintainers
+# SPDX-License-Identifier: Apache-2.0
 """Keep the tables in documents as they came out of the last run."""
 
 from __future__ import annotations

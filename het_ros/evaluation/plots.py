@@ -1,3 +1,5 @@
+# Copyright 2026 het_ros maintainers
+# SPDX-License-Identifier: Apache-2.0
 """The plots of a comparison as PNG: success, precision, attributes, calibration, speed."""
 
 from __future__ import annotations

@@ -1,3 +1,5 @@
+# Copyright 2026 het_ros maintainers
+# SPDX-License-Identifier: Apache-2.0
 """Where runs start and how frames reach the tracker: OPE, TRE, SRE, real time, restarts."""
 
 from __future__ import annotations

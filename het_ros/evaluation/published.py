@@ -1,3 +1,5 @@
+# Copyright 2026 het_ros maintainers
+# SPDX-License-Identifier: Apache-2.0
 """Published figures beside ours, for the sequences that both have."""
 
 from __future__ import annotations

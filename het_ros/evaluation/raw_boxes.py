@@ -1,3 +1,5 @@
+# Copyright 2026 het_ros maintainers
+# SPDX-License-Identifier: Apache-2.0
 """Raw boxes as text, in the layout that the got10k and OTB toolkits read."""
 
 from __future__ import annotations

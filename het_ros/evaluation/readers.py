@@ -1,3 +1,5 @@
+# Copyright 2026 het_ros maintainers
+# SPDX-License-Identifier: Apache-2.0
 """Find the sequences of a data folder, in OTB's or VOT's layout."""
 
 from __future__ import annotations

@@ -1,3 +1,5 @@
+# Copyright 2026 het_ros maintainers
+# SPDX-License-Identifier: Apache-2.0
 """Accuracy and robustness of the restart protocol, as VOT defines them."""
 
 from __future__ import annotations

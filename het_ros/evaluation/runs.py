@@ -1,3 +1,5 @@
+# Copyright 2026 het_ros maintainers
+# SPDX-License-Identifier: Apache-2.0
 """Plan the jobs of a protocol, take from the cache what is there, run the rest."""
 
 from __future__ import annotations

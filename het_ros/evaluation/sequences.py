@@ -1,3 +1,5 @@
+# Copyright 2026 het_ros maintainers
+# SPDX-License-Identifier: Apache-2.0
 """A sequence: its frames, which trackers see, and its ground truth, which they do not."""
 
 from __future__ import annotations

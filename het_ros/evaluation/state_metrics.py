@@ -1,3 +1,5 @@
+# Copyright 2026 het_ros maintainers
+# SPDX-License-Identifier: Apache-2.0
 """Did the tracker know? Its state, its score and its covariance against the truth."""
 
 from __future__ import annotations

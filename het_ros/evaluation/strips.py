@@ -1,3 +1,5 @@
+# Copyright 2026 het_ros maintainers
+# SPDX-License-Identifier: Apache-2.0
 """Strips of frames: where the trackers of a comparison differ most."""
 
 from __future__ import annotations

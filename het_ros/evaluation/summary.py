@@ -1,3 +1,5 @@
+# Copyright 2026 het_ros maintainers
+# SPDX-License-Identifier: Apache-2.0
 """From runs to the figures of ``results.json``: means over seeds, starts and sequences."""
 
 from __future__ import annotations

@@ -1,3 +1,5 @@
+# Copyright 2026 het_ros maintainers
+# SPDX-License-Identifier: Apache-2.0
 """The tables of a report, once for Markdown and once for HTML."""
 
 from __future__ import annotations

@@ -1,3 +1,5 @@
+# Copyright 2026 het_ros maintainers
+# SPDX-License-Identifier: Apache-2.0
 """How fast trackers are: alone on the machine, on one thread, side by side on the same frames."""
 
 from __future__ import annotations

@@ -1,3 +1,5 @@
+# Copyright 2026 het_ros maintainers
+# SPDX-License-Identifier: Apache-2.0
 """What can be compared: every tracker behind the same two methods, and how to name one."""
 
 from __future__ import annotations

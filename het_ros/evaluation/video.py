@@ -1,3 +1,5 @@
+# Copyright 2026 het_ros maintainers
+# SPDX-License-Identifier: Apache-2.0
 """One annotated MP4 a sequence, with every tracker's box."""
 
 from __future__ import annotations

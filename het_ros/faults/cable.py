@@ -1,3 +1,5 @@
+# Copyright 2026 het_ros maintainers
+# SPDX-License-Identifier: Apache-2.0
 """Pull the cable between a camera's and a tracker's host, and put it back.
 
 Two network namespaces joined by a veth pair, as in ``het_ros.tools.two_hosts``. Prints what the

@@ -1,3 +1,5 @@
+# Copyright 2026 het_ros maintainers
+# SPDX-License-Identifier: Apache-2.0
 """A camera with faults: a bag's images at a steady rate, some lost, late, doubled or misstamped.
 
 To see what your robot does when its camera fails, without taking a camera apart.

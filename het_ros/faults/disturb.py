@@ -1,3 +1,5 @@
+# Copyright 2026 het_ros maintainers
+# SPDX-License-Identifier: Apache-2.0
 """Bad streams of good ones: frames lost, doubled, late, in the wrong order, with wrong stamps.
 
 Everything is a pure function from deliveries to deliveries, so that faults can be combined, and

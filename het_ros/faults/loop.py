@@ -1,3 +1,5 @@
+# Copyright 2026 het_ros maintainers
+# SPDX-License-Identifier: Apache-2.0
 """A rendered street that goes round and round: footage for hours, with its truth."""
 
 from __future__ import annotations

@@ -1,3 +1,5 @@
+# Copyright 2026 het_ros maintainers
+# SPDX-License-Identifier: Apache-2.0
 """More frames than the installed tracker can process: latency, drops, memory.
 
 First the camera sends as fast as it goes, which tells how many frames a second the tracker can

@@ -1,3 +1,5 @@
+# Copyright 2026 het_ros maintainers
+# SPDX-License-Identifier: Apache-2.0
 """Hours in minutes: the installed tracker at a steady rate for long, watched from outside.
 
 A camera in this process plays a rendered street in a loop, with columns, passers-by and new boxes;

@@ -1,3 +1,5 @@
+# Copyright 2026 het_ros maintainers
+# SPDX-License-Identifier: Apache-2.0
 """A camera for hours: a loop of footage with new boxes, and what came back in each stretch."""
 
 from __future__ import annotations

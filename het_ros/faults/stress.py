@@ -1,3 +1,5 @@
+# Copyright 2026 het_ros maintainers
+# SPDX-License-Identifier: Apache-2.0
 """What a busy machine costs: accuracy in real time, alone and beside processes that load it.
 
 The tracker follows the sequences as a camera of 30 or 60 frames/s shows them, first as the machine

@@ -1,3 +1,5 @@
+# Copyright 2026 het_ros maintainers
+# SPDX-License-Identifier: Apache-2.0
 """From the rows of a soak to its figures, and whether they are good enough."""
 
 from __future__ import annotations

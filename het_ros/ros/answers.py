@@ -1,3 +1,5 @@
+# Copyright 2026 het_ros maintainers
+# SPDX-License-Identifier: Apache-2.0
 """What is published of one frame: estimate, status, debug image."""
 
 from __future__ import annotations

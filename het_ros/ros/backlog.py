@@ -1,3 +1,5 @@
+# Copyright 2026 het_ros maintainers
+# SPDX-License-Identifier: Apache-2.0
 """Frames that wait to be processed, and which of them are left out to catch up."""
 
 from __future__ import annotations

@@ -1,3 +1,5 @@
+# Copyright 2026 het_ros maintainers
+# SPDX-License-Identifier: Apache-2.0
 """Which image a box starts on: a past one out of the ring, the newest, or one to come."""
 
 from __future__ import annotations

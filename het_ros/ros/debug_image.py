@@ -1,3 +1,5 @@
+# Copyright 2026 het_ros maintainers
+# SPDX-License-Identifier: Apache-2.0
 """``~/debug_image``: what the tracker sees, for the eyes of a person."""
 
 from __future__ import annotations

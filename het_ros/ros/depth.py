@@ -1,3 +1,5 @@
+# Copyright 2026 het_ros maintainers
+# SPDX-License-Identifier: Apache-2.0
 """From a depth image and a box to the target's place in space."""
 
 from __future__ import annotations

@@ -1,3 +1,5 @@
+# Copyright 2026 het_ros maintainers
+# SPDX-License-Identifier: Apache-2.0
 """``~/detections``: the estimate as vision_msgs has it, where vision_msgs is installed."""
 
 from __future__ import annotations

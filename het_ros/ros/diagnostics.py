@@ -1,3 +1,5 @@
+# Copyright 2026 het_ros maintainers
+# SPDX-License-Identifier: Apache-2.0
 """``/diagnostics``: how the node does, once a second, for rqt_robot_monitor and the like."""
 
 from __future__ import annotations

@@ -1,3 +1,5 @@
+# Copyright 2026 het_ros maintainers
+# SPDX-License-Identifier: Apache-2.0
 """A follower's control law with its dead man's switch; plain Python, so that it can be tested."""
 
 from __future__ import annotations

@@ -1,3 +1,5 @@
+# Copyright 2026 het_ros maintainers
+# SPDX-License-Identifier: Apache-2.0
 """The executable ``follower_example``: what a robot may do with the tracker's outputs.
 
 It is no part of the tracker, and no more than an example: it knows nothing of obstacles.

@@ -1,3 +1,5 @@
+# Copyright 2026 het_ros maintainers
+# SPDX-License-Identifier: Apache-2.0
 """Frames as they came in, and the short memory of them that late boxes start from."""
 
 from __future__ import annotations

@@ -1,3 +1,5 @@
+# Copyright 2026 het_ros maintainers
+# SPDX-License-Identifier: Apache-2.0
 """Log lines that help once, or some times, and then keep quiet."""
 
 from __future__ import annotations

@@ -1,3 +1,5 @@
+# Copyright 2026 het_ros maintainers
+# SPDX-License-Identifier: Apache-2.0
 """How large a compressed image is by its header: a few bytes can claim more than memory holds."""
 
 from __future__ import annotations

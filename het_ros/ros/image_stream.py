@@ -1,3 +1,5 @@
+# Copyright 2026 het_ros maintainers
+# SPDX-License-Identifier: Apache-2.0
 """Where images come in: one subscription for every node of a process that looks at them."""
 
 from __future__ import annotations

@@ -1,3 +1,5 @@
+# Copyright 2026 het_ros maintainers
+# SPDX-License-Identifier: Apache-2.0
 """Image messages to arrays, without cv_bridge (which breaks under NumPy 2).
 
 Every conversion ends in ``(H, W, 3) uint8`` BGR or ``(H, W) uint8`` gray, what the tracker takes.

@@ -1,3 +1,5 @@
+# Copyright 2026 het_ros maintainers
+# SPDX-License-Identifier: Apache-2.0
 """A lifecycle node that can start itself, tells what fails and takes away what it made."""
 
 from __future__ import annotations

@@ -1,3 +1,5 @@
+# Copyright 2026 het_ros maintainers
+# SPDX-License-Identifier: Apache-2.0
 """Boxes and estimates to messages and back; pure functions, no node.
 
 Pixels stay pixels: REP-103 wants SI units, but a tracker on one camera has none to give. The

@@ -1,3 +1,5 @@
+# Copyright 2026 het_ros maintainers
+# SPDX-License-Identifier: Apache-2.0
 """From a pixel to a ray: the camera model of a CameraInfo."""
 
 from __future__ import annotations

@@ -1,3 +1,5 @@
+# Copyright 2026 het_ros maintainers
+# SPDX-License-Identifier: Apache-2.0
 """The node's outputs: publishers that make a message only when somebody is to get it."""
 
 from __future__ import annotations

@@ -1,3 +1,5 @@
+# Copyright 2026 het_ros maintainers
+# SPDX-License-Identifier: Apache-2.0
 """Both parameter tables (the tracker's and the node's) as ROS parameters."""
 
 from __future__ import annotations

@@ -1,3 +1,5 @@
+# Copyright 2026 het_ros maintainers
+# SPDX-License-Identifier: Apache-2.0
 """From frames and boxes in whatever order they come to one estimate a frame.
 
 Holds what lies between the topics and the track: the order of stamps, the ring of recent frames,

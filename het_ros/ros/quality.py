@@ -1,3 +1,5 @@
+# Copyright 2026 het_ros maintainers
+# SPDX-License-Identifier: Apache-2.0
 """What to change when publisher and subscriber do not fit, by the parameter's name."""
 
 from __future__ import annotations

@@ -1,3 +1,5 @@
+# Copyright 2026 het_ros maintainers
+# SPDX-License-Identifier: Apache-2.0
 """Where a target is that is not seen: by the robot's own motion and the target's last velocity."""
 
 from __future__ import annotations

@@ -1,3 +1,5 @@
+# Copyright 2026 het_ros maintainers
+# SPDX-License-Identifier: Apache-2.0
 """Writes what is generated from the parameter tables: ``python -m het_ros.ros.reference``.
 
 That is ``config/tracker.yaml``, ``docs/PARAMETERS.md``, and the README's table between the lines

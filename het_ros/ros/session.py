@@ -1,3 +1,5 @@
+# Copyright 2026 het_ros maintainers
+# SPDX-License-Identifier: Apache-2.0
 """The life of one track on a stream of frames: started, followed, lost. Knows no ROS."""
 
 from __future__ import annotations

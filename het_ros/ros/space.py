@@ -1,3 +1,5 @@
+# Copyright 2026 het_ros maintainers
+# SPDX-License-Identifier: Apache-2.0
 """From the box to space: bearing with camera_info, place with depth. Holds the newest of both."""
 
 from __future__ import annotations

@@ -1,3 +1,5 @@
+# Copyright 2026 het_ros maintainers
+# SPDX-License-Identifier: Apache-2.0
 """What a frame's stamp says of the stream: next, seen already, late, or time gone back."""
 
 from __future__ import annotations

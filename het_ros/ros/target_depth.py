@@ -1,3 +1,5 @@
+# Copyright 2026 het_ros maintainers
+# SPDX-License-Identifier: Apache-2.0
 """Whether a box holds the target by its depth, and how far away the target is.
 
 The depth of a body changes little from frame to frame. So the target is the surface nearest to its

@@ -1,3 +1,5 @@
+# Copyright 2026 het_ros maintainers
+# SPDX-License-Identifier: Apache-2.0
 """The node ``tracker``: one box on a camera stream in; box, velocity, status and more out."""
 
 from __future__ import annotations

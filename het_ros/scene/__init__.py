@@ -1,3 +1,5 @@
+# Copyright 2026 het_ros maintainers
+# SPDX-License-Identifier: Apache-2.0
 """A rendered street with exact truth: frames, the target's box and how much of it is seen."""
 
 from het_ros.scene.camera import CameraState, Lens

@@ -1,3 +1,5 @@
+# Copyright 2026 het_ros maintainers
+# SPDX-License-Identifier: Apache-2.0
 """What is far away: sky and hills all around, and the row of houses across the road."""
 
 from __future__ import annotations

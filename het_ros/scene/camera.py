@@ -1,3 +1,5 @@
+# Copyright 2026 het_ros maintainers
+# SPDX-License-Identifier: Apache-2.0
 """The camera: where it stands, where it looks, and where a point of the street lands in px.
 
 The street's axes: x to the right along the houses, y up, z towards the houses; the ground is

@@ -1,3 +1,5 @@
+# Copyright 2026 het_ros maintainers
+# SPDX-License-Identifier: Apache-2.0
 """What a figure wears: textures wrapped around the parts of its body.
 
 A texture is (rows, TURN, 3) float32 BGR: rows run from the part's upper joint to its lower one,

@@ -1,3 +1,5 @@
+# Copyright 2026 het_ros maintainers
+# SPDX-License-Identifier: Apache-2.0
 """What a rendered scene is made from."""
 
 from __future__ import annotations

@@ -1,3 +1,5 @@
+# Copyright 2026 het_ros maintainers
+# SPDX-License-Identifier: Apache-2.0
 """A walking figure: its body drawn limb by limb as shaded tubes, its silhouette and its shadow."""
 
 from __future__ import annotations

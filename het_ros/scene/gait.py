@@ -1,3 +1,5 @@
+# Copyright 2026 het_ros maintainers
+# SPDX-License-Identifier: Apache-2.0
 """A walking body: where its joints are at a phase of the gait.
 
 Body axes: forward, up, left; the angles are those of an ordinary adult's walk, simplified.

@@ -1,3 +1,5 @@
+# Copyright 2026 het_ros maintainers
+# SPDX-License-Identifier: Apache-2.0
 """The ground: lawn, promenade, verge, road and pavement on one plane."""
 
 from __future__ import annotations

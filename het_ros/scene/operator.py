@@ -1,3 +1,5 @@
+# Copyright 2026 het_ros maintainers
+# SPDX-License-Identifier: Apache-2.0
 """Somebody holds the camera: it pans after the target, a little late, and shakes."""
 
 from __future__ import annotations

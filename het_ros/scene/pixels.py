@@ -1,3 +1,5 @@
+# Copyright 2026 het_ros maintainers
+# SPDX-License-Identifier: Apache-2.0
 """Laying pictures with soft edges into an image.
 
 A cut-out is (h, w, 4) uint8: BGR already multiplied by its alpha, then alpha.

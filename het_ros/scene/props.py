@@ -1,3 +1,5 @@
+# Copyright 2026 het_ros maintainers
+# SPDX-License-Identifier: Apache-2.0
 """Things that stand in the street: trees, lamps, bushes, posts. Each is a flat cut-out."""
 
 from __future__ import annotations

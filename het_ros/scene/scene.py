@@ -1,3 +1,5 @@
+# Copyright 2026 het_ros maintainers
+# SPDX-License-Identifier: Apache-2.0
 """The scene: everything put together, frame by frame, with its truth."""
 
 from __future__ import annotations

@@ -1,3 +1,5 @@
+# Copyright 2026 het_ros maintainers
+# SPDX-License-Identifier: Apache-2.0
 """What the light, the shutter and the sensor do to an image."""
 
 from __future__ import annotations

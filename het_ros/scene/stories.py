@@ -1,3 +1,5 @@
+# Copyright 2026 het_ros maintainers
+# SPDX-License-Identifier: Apache-2.0
 """What can happen in the street: who walks where, what hides them, how the light goes.
 
 A story is drawn once a scene from the scene's generator, so every seed tells it a little

@@ -1,3 +1,5 @@
+# Copyright 2026 het_ros maintainers
+# SPDX-License-Identifier: Apache-2.0
 """The street as it stands: ground, houses, sky, and the things on the ground."""
 
 from __future__ import annotations

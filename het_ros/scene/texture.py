@@ -1,3 +1,5 @@
+# Copyright 2026 het_ros maintainers
+# SPDX-License-Identifier: Apache-2.0
 """Noise and patterns that the street's surfaces are made of."""
 
 from __future__ import annotations

@@ -1,3 +1,5 @@
+# Copyright 2026 het_ros maintainers
+# SPDX-License-Identifier: Apache-2.0
 """Messages for bags, made without rclpy: images and boxes with their stamps."""
 
 from __future__ import annotations

@@ -1,3 +1,5 @@
+# Copyright 2026 het_ros maintainers
+# SPDX-License-Identifier: Apache-2.0
 """Read rosbag2 bags: CDR bytes to play, frames and ground truth to look at.
 
 A bag may come from anybody. Only files inside its folder are read, nothing in it is executed, and

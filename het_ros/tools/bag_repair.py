@@ -1,3 +1,5 @@
+# Copyright 2026 het_ros maintainers
+# SPDX-License-Identifier: Apache-2.0
 """End an mcap file that was cut off (a full disk, a killed recorder) so that it can be read.
 
 A recording that was cut off lacks its index and often ends in half a record. That half is cut away

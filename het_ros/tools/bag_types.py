@@ -1,3 +1,5 @@
+# Copyright 2026 het_ros maintainers
+# SPDX-License-Identifier: Apache-2.0
 """Whether a bag means by a message type what ROS 2 Jazzy does.
 
 A bag carries the definitions of its types. rosbags' own high-level reader makes Python code of

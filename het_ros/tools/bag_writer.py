@@ -1,3 +1,5 @@
+# Copyright 2026 het_ros maintainers
+# SPDX-License-Identifier: Apache-2.0
 """Write rosbag2 bags in mcap without ROS being installed."""
 
 from __future__ import annotations

@@ -1,3 +1,5 @@
+# Copyright 2026 het_ros maintainers
+# SPDX-License-Identifier: Apache-2.0
 """A rendered robot that follows a rendered figure with the real tracker and follower nodes.
 
 ``python -m het_ros.tools.closed_loop --out out/loop`` renders what the robot's camera sees, feeds

@@ -1,3 +1,5 @@
+# Copyright 2026 het_ros maintainers
+# SPDX-License-Identifier: Apache-2.0
 """Footage to make bags from: folders of images, annotated or not, and video files."""
 
 from __future__ import annotations

@@ -1,3 +1,5 @@
+# Copyright 2026 het_ros maintainers
+# SPDX-License-Identifier: Apache-2.0
 """Ctrl-C that ends a long job between two frames instead of in the middle of one."""
 
 from __future__ import annotations

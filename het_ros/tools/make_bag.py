@@ -1,3 +1,5 @@
+# Copyright 2026 het_ros maintainers
+# SPDX-License-Identifier: Apache-2.0
 """Turn a folder of images or a video file into a bag that the tracker can be fed with."""
 
 from __future__ import annotations

@@ -1,3 +1,5 @@
+# Copyright 2026 het_ros maintainers
+# SPDX-License-Identifier: Apache-2.0
 """Render a scene into a bag: images, camera_info, the init box and the exact ground truth."""
 
 from __future__ import annotations

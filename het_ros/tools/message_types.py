@@ -1,3 +1,5 @@
+# Copyright 2026 het_ros maintainers
+# SPDX-License-Identifier: Apache-2.0
 """Message classes by their names, and whether a bag means the same by a name."""
 
 from __future__ import annotations

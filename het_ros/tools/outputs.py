@@ -1,3 +1,5 @@
+# Copyright 2026 het_ros maintainers
+# SPDX-License-Identifier: Apache-2.0
 """The tracker's output topics: what to record of them, and how to read a recording."""
 
 from __future__ import annotations

@@ -1,3 +1,5 @@
+# Copyright 2026 het_ros maintainers
+# SPDX-License-Identifier: Apache-2.0
 """Play a bag's images and boxes to a running tracker in real time, and record its answers."""
 
 from __future__ import annotations

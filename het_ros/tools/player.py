@@ -1,3 +1,5 @@
+# Copyright 2026 het_ros maintainers
+# SPDX-License-Identifier: Apache-2.0
 """Publish a bag's images and boxes, byte by byte as they were recorded."""
 
 from __future__ import annotations

@@ -1,3 +1,5 @@
+# Copyright 2026 het_ros maintainers
+# SPDX-License-Identifier: Apache-2.0
 """track.png: a strip of frames, and what the tracker said over time."""
 
 from __future__ import annotations

@@ -1,3 +1,5 @@
+# Copyright 2026 het_ros maintainers
+# SPDX-License-Identifier: Apache-2.0
 """Record what a tracker publishes, with the stamps of its input."""
 
 from __future__ import annotations

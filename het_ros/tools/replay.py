@@ -1,3 +1,5 @@
+# Copyright 2026 het_ros maintainers
+# SPDX-License-Identifier: Apache-2.0
 """Run a bag through the tracker's node in this process: every frame, as fast as it goes.
 
 The node is the very class that ``ros2 run het_ros tracker`` starts, fed with the bag's messages

@@ -1,3 +1,5 @@
+# Copyright 2026 het_ros maintainers
+# SPDX-License-Identifier: Apache-2.0
 """From a recording to things to look at: track.csv, track.mp4, track.png and a summary."""
 
 from __future__ import annotations

@@ -1,3 +1,5 @@
+# Copyright 2026 het_ros maintainers
+# SPDX-License-Identifier: Apache-2.0
 """track.csv: what the tracker answered to each frame, one row a frame."""
 
 from __future__ import annotations

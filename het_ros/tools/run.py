@@ -1,3 +1,5 @@
+# Copyright 2026 het_ros maintainers
+# SPDX-License-Identifier: Apache-2.0
 """The whole way at once: start the installed tracker, play a bag to it, show what it answered.
 
 The tracker is a process of its own, as ``ros2 run het_ros tracker`` starts it, and gets the frames

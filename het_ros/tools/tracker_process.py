@@ -1,3 +1,5 @@
+# Copyright 2026 het_ros maintainers
+# SPDX-License-Identifier: Apache-2.0
 """The installed executable ``tracker`` as a process of its own, stopped for sure."""
 
 from __future__ import annotations

@@ -1,3 +1,5 @@
+# Copyright 2026 het_ros maintainers
+# SPDX-License-Identifier: Apache-2.0
 """The Fast DDS profile with which a publisher of images loses none on the way."""
 
 from __future__ import annotations

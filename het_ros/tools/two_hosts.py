@@ -1,3 +1,5 @@
+# Copyright 2026 het_ros maintainers
+# SPDX-License-Identifier: Apache-2.0
 """Camera and tracker on two hosts, made of two network namespaces: rate and latency of answers.
 
 ``sudo -E python -m het_ros.tools.two_hosts`` runs the installed tracker in one namespace and a

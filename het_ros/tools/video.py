@@ -1,3 +1,5 @@
+# Copyright 2026 het_ros maintainers
+# SPDX-License-Identifier: Apache-2.0
 """Write an MP4 that browsers play: H.264, 4:2:0, index in front."""
 
 from __future__ import annotations

@@ -1,3 +1,5 @@
+# Copyright 2026 het_ros maintainers
+# SPDX-License-Identifier: Apache-2.0
 """Bottom layer: the base ensembles that find the sub-patches again.
 
 A sub-patch's base ensemble is the sum of m weak classifiers, one a compressive feature. All of

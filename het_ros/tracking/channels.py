@@ -1,3 +1,5 @@
+# Copyright 2026 het_ros maintainers
+# SPDX-License-Identifier: Apache-2.0
 """Pixels of the search window to a stack of feature channels."""
 
 from __future__ import annotations

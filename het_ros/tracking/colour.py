@@ -1,3 +1,5 @@
+# Copyright 2026 het_ros maintainers
+# SPDX-License-Identifier: Apache-2.0
 """How much the colours of a place are the target's rather than the background's.
 
 Shape features lose a target that bends, turns or is blurred; its colours stay. Two histograms,

@@ -1,3 +1,5 @@
+# Copyright 2026 het_ros maintainers
+# SPDX-License-Identifier: Apache-2.0
 """Middle layer: from the detected sub-patches to one measurement of the target."""
 
 from __future__ import annotations

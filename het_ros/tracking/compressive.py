@@ -1,3 +1,5 @@
+# Copyright 2026 het_ros maintainers
+# SPDX-License-Identifier: Apache-2.0
 """Compressive features of sub-patches, as dense maps over the search window.
 
 All sub-patches have one size and share one measurement matrix. So a compressive feature is one map

@@ -1,3 +1,5 @@
+# Copyright 2026 het_ros maintainers
+# SPDX-License-Identifier: Apache-2.0
 """The tracker's parameters, one declaration each for the node, the command line and the docs."""
 
 from __future__ import annotations

@@ -1,3 +1,5 @@
+# Copyright 2026 het_ros maintainers
+# SPDX-License-Identifier: Apache-2.0
 """What a target costs before it is started: a box or a parameter must not take all memory."""
 
 from __future__ import annotations

@@ -1,3 +1,5 @@
+# Copyright 2026 het_ros maintainers
+# SPDX-License-Identifier: Apache-2.0
 """Top layer: the adaptive Kalman filter over the target's centre."""
 
 from __future__ import annotations

@@ -1,3 +1,5 @@
+# Copyright 2026 het_ros maintainers
+# SPDX-License-Identifier: Apache-2.0
 """One declaration a parameter: default, range, unit and meaning in one place.
 
 A configuration is a frozen dataclass whose fields are made with :func:`parameter`. The node's

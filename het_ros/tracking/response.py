@@ -1,3 +1,5 @@
+# Copyright 2026 het_ros maintainers
+# SPDX-License-Identifier: Apache-2.0
 """Middle layer, dense: every base ensemble votes for every place of the target.
 
 Instead of one hypothesis a sub-patch (``combination``), the whole score map of each sub-patch is

@@ -1,3 +1,5 @@
+# Copyright 2026 het_ros maintainers
+# SPDX-License-Identifier: Apache-2.0
 """Bottom layer, discriminative: base ensembles by ridge regression on the same feature maps.
 
 Where naive Bayes gives each weak classifier a vote of its own, here the votes are fitted

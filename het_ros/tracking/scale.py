@@ -1,3 +1,5 @@
+# Copyright 2026 het_ros maintainers
+# SPDX-License-Identifier: Apache-2.0
 """How much larger or smaller the target has become since the last frame.
 
 A one-dimensional correlation filter over the target at S sizes around the present one: the sizes

@@ -1,3 +1,5 @@
+# Copyright 2026 het_ros maintainers
+# SPDX-License-Identifier: Apache-2.0
 """The random overlapping sub-patches of a target, and which of them are to be updated."""
 
 from __future__ import annotations

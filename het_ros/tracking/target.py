@@ -1,3 +1,5 @@
+# Copyright 2026 het_ros maintainers
+# SPDX-License-Identifier: Apache-2.0
 """The model of one target: how a frame goes through the layers, and how it is learnt."""
 
 from __future__ import annotations

@@ -1,3 +1,5 @@
+# Copyright 2026 het_ros maintainers
+# SPDX-License-Identifier: Apache-2.0
 """The Hierarchical Ensemble Tracker: the layers joined, from an image to an estimate."""
 
 from __future__ import annotations

@@ -1,3 +1,5 @@
+# Copyright 2026 het_ros maintainers
+# SPDX-License-Identifier: Apache-2.0
 """Whether what was found is the target: what to follow, what to learn, when to give up.
 
 The mean weight of the combination says how the sub-patches compare, not whether the target is

@@ -1,3 +1,5 @@
+# Copyright 2026 het_ros maintainers
+# SPDX-License-Identifier: Apache-2.0
 """The search window: the part of an image that a frame's work is done on."""
 
 from __future__ import annotations

@@ -1,3 +1,5 @@
+# Copyright 2026 het_ros maintainers
+# SPDX-License-Identifier: Apache-2.0
 """What is measured, on tiny inputs: that it is measured, never how long it took."""
 
 import os

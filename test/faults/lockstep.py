@@ -1,3 +1,5 @@
+# Copyright 2026 het_ros maintainers
+# SPDX-License-Identifier: Apache-2.0
 """A camera that sends a disturbed stream to the installed tracker, one frame after the other."""
 
 from __future__ import annotations

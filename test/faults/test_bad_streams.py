@@ -1,3 +1,5 @@
+# Copyright 2026 het_ros maintainers
+# SPDX-License-Identifier: Apache-2.0
 """Frames that get lost, come twice, late or with odd stamps, sent to the installed tracker."""
 
 from __future__ import annotations

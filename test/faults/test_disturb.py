@@ -1,3 +1,5 @@
+# Copyright 2026 het_ros maintainers
+# SPDX-License-Identifier: Apache-2.0
 """Streams with faults are what their names say, and the same for the same seed."""
 
 from itertools import pairwise

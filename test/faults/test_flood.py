@@ -1,3 +1,5 @@
+# Copyright 2026 het_ros maintainers
+# SPDX-License-Identifier: Apache-2.0
 """What others may send to the installed tracker: too many boxes, too many calls, too large."""
 
 from __future__ import annotations

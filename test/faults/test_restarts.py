@@ -1,3 +1,5 @@
+# Copyright 2026 het_ros maintainers
+# SPDX-License-Identifier: Apache-2.0
 """The camera's or the tracker's process dies and comes back; signals at any moment."""
 
 from __future__ import annotations

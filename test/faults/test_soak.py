@@ -1,3 +1,5 @@
+# Copyright 2026 het_ros maintainers
+# SPDX-License-Identifier: Apache-2.0
 """The soak's verdict on made rows, and a short soak of the installed tracker."""
 
 from __future__ import annotations

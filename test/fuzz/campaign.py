@@ -1,3 +1,5 @@
+# Copyright 2026 het_ros maintainers
+# SPDX-License-Identifier: Apache-2.0
 """Run every fuzz test in turns until the time is up, and keep what fails: `make fuzz MINUTES=n`.
 
 Each turn is a pytest process of its own, so that a crash of a library is a failure of that turn

@@ -1,3 +1,5 @@
+# Copyright 2026 het_ros maintainers
+# SPDX-License-Identifier: Apache-2.0
 """How many cases a fuzz test tries, and how many it has tried."""
 
 from __future__ import annotations

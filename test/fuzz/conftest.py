@@ -1,3 +1,5 @@
+# Copyright 2026 het_ros maintainers
+# SPDX-License-Identifier: Apache-2.0
 """Settings of all fuzzing: short and repeatable in CI, long and random under `make fuzz`.
 
 Of each test there is one environment variable more than pytest gives: ``HET_FUZZ_CASES``, how many

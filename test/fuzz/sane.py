@@ -1,3 +1,5 @@
+# Copyright 2026 het_ros maintainers
+# SPDX-License-Identifier: Apache-2.0
 """What must hold of everything that leaves the tracker or the node."""
 
 from __future__ import annotations

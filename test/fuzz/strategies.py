@@ -1,3 +1,5 @@
+# Copyright 2026 het_ros maintainers
+# SPDX-License-Identifier: Apache-2.0
 """What may come in from outside: images, boxes, numbers, of every kind and none."""
 
 from __future__ import annotations

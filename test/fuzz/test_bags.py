@@ -1,3 +1,5 @@
+# Copyright 2026 het_ros maintainers
+# SPDX-License-Identifier: Apache-2.0
 """Bags from strangers: whatever is in the files, it is read or it is a BagError; nothing else."""
 
 import shutil

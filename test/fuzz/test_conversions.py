@@ -1,3 +1,5 @@
+# Copyright 2026 het_ros maintainers
+# SPDX-License-Identifier: Apache-2.0
 """Images, boxes, calibrations, depth and parameters: either the right thing or the one error."""
 
 import numpy as np

@@ -1,3 +1,5 @@
+# Copyright 2026 het_ros maintainers
+# SPDX-License-Identifier: Apache-2.0
 """The tracker itself: any images, boxes and times, in any order; then a target that it follows."""
 
 import math

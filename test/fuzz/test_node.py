@@ -1,3 +1,5 @@
+# Copyright 2026 het_ros maintainers
+# SPDX-License-Identifier: Apache-2.0
 """The whole node: any message, service, transition and parameter in any order; then good frames.
 
 Callbacks are taken from the node's own entities, as an executor would, and get messages that went

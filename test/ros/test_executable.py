@@ -1,3 +1,5 @@
+# Copyright 2026 het_ros maintainers
+# SPDX-License-Identifier: Apache-2.0
 """The installed executable in a process of its own, over DDS, as ``ros2 run`` starts it."""
 
 import signal

@@ -1,3 +1,5 @@
+# Copyright 2026 het_ros maintainers
+# SPDX-License-Identifier: Apache-2.0
 """Boxes that come after their image, and the ring of images that they are started from."""
 
 import numpy as np

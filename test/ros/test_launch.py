@@ -1,3 +1,5 @@
+# Copyright 2026 het_ros maintainers
+# SPDX-License-Identifier: Apache-2.0
 """The launch files, as far as they can be tried where launch itself may not be installed."""
 
 import importlib.util

@@ -1,3 +1,5 @@
+# Copyright 2026 het_ros maintainers
+# SPDX-License-Identifier: Apache-2.0
 """The managed node as a manager in another node sees it, by its services."""
 
 import pytest

@@ -1,3 +1,5 @@
+# Copyright 2026 het_ros maintainers
+# SPDX-License-Identifier: Apache-2.0
 """Gaps in a publisher's numbers are images that never came."""
 
 import pytest

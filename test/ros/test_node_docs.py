@@ -1,3 +1,5 @@
+# Copyright 2026 het_ros maintainers
+# SPDX-License-Identifier: Apache-2.0
 """docs/NODE.md names every topic of the node, and tests that there are."""
 
 import re

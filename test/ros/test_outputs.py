@@ -1,3 +1,5 @@
+# Copyright 2026 het_ros maintainers
+# SPDX-License-Identifier: Apache-2.0
 """Outputs that need more than an image: bearing, place, detections, debug image, diagnostics."""
 
 from dataclasses import dataclass, field

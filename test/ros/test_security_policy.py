@@ -1,3 +1,5 @@
+# Copyright 2026 het_ros maintainers
+# SPDX-License-Identifier: Apache-2.0
 """The example policy for SROS 2 allows what the node does, and nothing that it does not."""
 
 from pathlib import Path

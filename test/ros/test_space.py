@@ -1,3 +1,5 @@
+# Copyright 2026 het_ros maintainers
+# SPDX-License-Identifier: Apache-2.0
 """What is kept of depth images; what they are good for is in test_depth and test_outputs."""
 
 import numpy as np

@@ -1,3 +1,5 @@
+# Copyright 2026 het_ros maintainers
+# SPDX-License-Identifier: Apache-2.0
 """The runner behind `make fuzz`: it counts, it goes on after a failure, it keeps what failed."""
 
 import pytest

@@ -1,3 +1,5 @@
+# Copyright 2026 het_ros maintainers
+# SPDX-License-Identifier: Apache-2.0
 """Bags from strangers: nothing in them is executed, nothing outside their folder is read."""
 
 import sys

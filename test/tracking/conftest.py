@@ -1,3 +1,5 @@
+# Copyright 2026 het_ros maintainers
+# SPDX-License-Identifier: Apache-2.0
 """Real frames, from $HET_SEQUENCES or from the folder beside the checkout."""
 
 import os

@@ -1,3 +1,5 @@
+# Copyright 2026 het_ros maintainers
+# SPDX-License-Identifier: Apache-2.0
 """The paper's equations in the most obvious way: loops over places, rectangles and classifiers.
 
 Slow on purpose. Nothing here is shared with the package but the random draws (sub-patches and

@@ -1,3 +1,5 @@
+# Copyright 2026 het_ros maintainers
+# SPDX-License-Identifier: Apache-2.0
 """The dense tracker against a slow and obvious one, frame by frame."""
 
 import dataclasses

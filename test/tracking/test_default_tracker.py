@@ -1,3 +1,5 @@
+# Copyright 2026 het_ros maintainers
+# SPDX-License-Identifier: Apache-2.0
 """The default configuration on real frames, and on whatever else a stream may hold."""
 
 import dataclasses

@@ -1,3 +1,5 @@
+# Copyright 2026 het_ros maintainers
+# SPDX-License-Identifier: Apache-2.0
 """TRACKING, COASTING, LOST against an exact truth: rendered scenes, and one real occlusion."""
 
 from functools import cache

@@ -1,3 +1,5 @@
+# Copyright 2026 het_ros maintainers
+# SPDX-License-Identifier: Apache-2.0
 """Windows at a resolution of their own, against each px looked up by itself."""
 
 import numpy as np
