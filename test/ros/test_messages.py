@@ -56,6 +56,8 @@ def test_box_is_the_bounds_of_a_polygon(corners, box):
         ([(1, 1), (50, 50), (20, -math.inf)], "NaN or infinite"),
         ([(1, 1), (4.9, 5)], "16 px"),
         ([(1, 1), (1, 500)], "16 px"),
+        ([(1, 1), (1.5, 500)], "sides of 1 px"),
+        ([(0, 0), (1e-5, 3.4e38)], "sides of 1 px"),  # it took all memory
         ([(7, 7)] * 4, "16 px"),
     ],
 )
