@@ -114,7 +114,9 @@ class TrackingSession:
                 "send a new box"
             )
         if source != self._source:
-            return f"the images' frame_id changed from {self._source!r} to {source!r}"
+            return (
+                f"the images' frame_id changed from {self._source!r} to {source!r}: send a new box"
+            )
         return ""
 
     def _take(self, estimate: Estimate) -> None:

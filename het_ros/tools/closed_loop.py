@@ -41,6 +41,8 @@ from het_ros.tracking.estimate import State
 FAR = 30.0  # m, depth of the street behind all
 LOST_AFTER = 4.0  # s: the robot waits so long for who went behind a column
 FASTEST = 1.2  # m/s: a robot slower than who it follows loses them
+HIDDEN, SEEN = 0.02, 0.5  # visible part of the figure
+OVERLAP = 0.3  # IoU from which on a box is on the figure
 START = 1_000_000_000  # ns, stamp of the first image: 0 would mean "no stamp"
 
 
@@ -230,22 +232,44 @@ def main(arguments: list[str] | None = None) -> int:
     context = Context()
     rclpy.init(context=context)
     loop = Loop(scene, options.distance, context)
-    in_view, hidden, away = [], [], []
+    moments: list[Moment] = []
     try:
         with VideoWriter(options.out / "loop.mp4", scene.config.rate) as video:
             for moment in tqdm(loop.run(), total=len(scene), unit="frame"):
                 video.add(_caption(moment), round(moment.frame.stamp * 1e9))
-                in_view.append(moment.in_view)
-                hidden.append(moment.in_view and moment.frame.visible < 0.3)
-                away.append(moment.away)
+                moments.append(replace(moment, frame=_without_images(moment.frame)))
     finally:
         loop.close()
         rclpy.try_shutdown(context=context)
-    seconds = sum(hidden) / scene.config.rate
-    print(f"in view   {np.mean(in_view):.1%} of {len(away)} frames, hidden for {seconds:.1f} s")
-    print(f"distance  {np.mean(away):.2f} m (mean), {min(away):.2f} to {max(away):.2f} m")
-    print(f"look at   {options.out / 'loop.mp4'}")
-    return 0 if all(in_view) else 1
+    print("\n".join([*_figures(moments, scene.config.rate), f"look at   {options.out}/loop.mp4"]))
+    return 0 if all(moment.in_view for moment in moments) else 1
+
+
+def _figures(moments: list[Moment], rate: float) -> list[str]:
+    """How it went, in lines of text."""
+    in_view = np.mean([moment.in_view for moment in moments])
+    hidden = sum(moment.frame.visible < HIDDEN for moment in moments) / rate
+    seen = [moment for moment in moments if moment.frame.visible >= SEEN]
+    tracked = np.mean([m.row.state is State.TRACKING and _on_it(m) for m in seen])
+    wrong = sum(m.row.state is State.TRACKING and not _on_it(m) for m in moments)
+    away = [moment.away for moment in moments]
+    return [
+        f"in view   {in_view:.1%} of {len(moments)} frames; wholly hidden for {hidden:.1f} s",
+        f"tracked   {tracked:.1%} of the frames that show half of the figure; "
+        f"TRACKING beside it in {wrong}",
+        f"distance  {np.mean(away):.2f} m (mean), {min(away):.2f} to {max(away):.2f} m; "
+        f"to the column at least {min(moment.clearance for moment in moments):.2f} m",
+    ]
+
+
+def _on_it(moment: Moment) -> bool:
+    box, truth = moment.row.box, moment.frame.box
+    return box is not None and truth is not None and box.iou(truth) > OVERLAP
+
+
+def _without_images(frame: Frame) -> Frame:
+    nothing = np.empty((0, 0), np.uint8)
+    return replace(frame, image=nothing, mask=nothing)
 
 
 def _caption(moment: Moment) -> np.ndarray:
