@@ -13,6 +13,7 @@ from hypothesis import strategies as st
 from rosbags.rosbag2 import CompressionFormat, CompressionMode, StoragePlugin, Writer
 
 from het_ros.ros.images import ImageError
+from het_ros.tools import bag_repair
 from het_ros.tools.bag_messages import (
     COMPRESSED_IMAGE,
     DIAGNOSTICS,
@@ -138,6 +139,22 @@ def test_storage_cut_off_or_changed(data):
     if data.draw(st.integers(0, 5)) == 0:  # as a recorder that was killed leaves it
         del files["metadata.yaml"]
     in_a_folder(files)
+
+
+@cases(20)
+@given(st.data())
+@counted
+def test_repair_of_what_was_cut_off_or_changed(data):
+    broken = bytearray(whole_bag("mcap")["bag.mcap"])
+    for _ in range(data.draw(st.sampled_from([0, 0, 1, 5]))):
+        broken[data.draw(st.integers(0, len(broken) - 1))] = data.draw(st.integers(0, 255))
+    broken = broken[: data.draw(st.integers(0, len(broken)))]
+    with tempfile.TemporaryDirectory() as folder:
+        file = Path(folder) / "bag.mcap"
+        file.write_bytes(broken)
+        assert bag_repair.main([str(file)]) in (0, 1)
+        assert [p.name for p in Path(folder).iterdir()] == ["bag.mcap"]
+        read_all(Path(folder))
 
 
 @cases(60)

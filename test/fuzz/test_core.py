@@ -27,7 +27,7 @@ CONFIGS = st.sampled_from(
         TrackerConfig(trust=False, features=10),
         TrackerConfig(colour_weight=1.0, learning_rate=0.0, ridge=1e-9, features=10),
         TrackerConfig(scales=65, scale_step=1.2, scale_rate=1.0, features=10),
-        TrackerConfig(hidden=1.0, return_template=2.0, lost_after=0.0, features=10),
+        TrackerConfig(hidden=1.0, return_probability=1.0, lost_after=0.0, features=10),
         TrackerConfig(cell=16, features=10, largest_rectangle=0.01),
         TrackerConfig(channels=("gray",), sub_patch_fraction=0.1, features=10),
         TrackerConfig(acceleration=1e4, measurement_noise=1e-4, longest_dt=60.0, features=10),
