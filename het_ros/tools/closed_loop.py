@@ -17,7 +17,6 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
-import cv2
 import numpy as np
 import rclpy
 from rclpy.context import Context
@@ -32,7 +31,7 @@ from het_ros.ros.messages import box_from_polygon, polygon_from_box, stamp_ns
 from het_ros.ros.status import status_values
 from het_ros.ros.tracker_node import TrackerNode
 from het_ros.scene import CameraState, Frame, Scene, SceneConfig
-from het_ros.tools.drawing import annotate
+from het_ros.tools.drawing import annotate, write_words
 from het_ros.tools.results import Row
 from het_ros.tools.video import VideoWriter
 from het_ros.tracking.config import TrackerConfig
@@ -276,11 +275,7 @@ def _caption(moment: Moment) -> np.ndarray:
     linear, angular = moment.command
     picture = annotate(moment.frame.image, moment.row, moment.frame.box)
     words = f"{moment.away:.1f} m   {linear:+.2f} m/s   {angular:+.2f} rad/s"
-    at = (10, 24)
-    for shade, thickness in (((0, 0, 0), 3), ((255, 255, 255), 1)):
-        cv2.putText(
-            picture, words, at, cv2.FONT_HERSHEY_SIMPLEX, 0.6, shade, thickness, cv2.LINE_AA
-        )
+    write_words(picture, words, (255, 255, 255), at_top=True)
     return picture
 
 

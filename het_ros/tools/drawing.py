@@ -84,7 +84,14 @@ def _caption(canvas: NDArray[np.uint8], row: Row, colour: Colour) -> None:
         text += f"  score {row.score:.2f}"
     if row.velocity:
         text += f"  {np.hypot(*row.velocity):.0f} px/s"
+    write_words(canvas, text, colour)
+
+
+def write_words(
+    canvas: NDArray[np.uint8], text: str, colour: Colour, at_top: bool = False
+) -> None:
+    """Write a line at the lower or upper left, on a dark ground that goes with any image."""
     (width, height), below = cv2.getTextSize(text, cv2.FONT_HERSHEY_SIMPLEX, 0.6, 1)
-    base = canvas.shape[0] - below - 4
-    canvas[base - height - 4 :, : width + 16] //= 4  # a dark ground, so that any image will do
+    base = height + 4 if at_top else canvas.shape[0] - below - 4
+    canvas[max(base - height - 4, 0) : base + below + 4, : width + 16] //= 4
     cv2.putText(canvas, text, (8, base), cv2.FONT_HERSHEY_SIMPLEX, 0.6, colour, 1, cv2.LINE_AA)

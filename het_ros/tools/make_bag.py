@@ -4,7 +4,6 @@
 
 from __future__ import annotations
 
-import argparse
 import sys
 from collections.abc import Sequence
 from pathlib import Path
@@ -15,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 from tqdm import tqdm
 
+from het_ros.tools.arguments import INTERRUPTED, add_init, command
 from het_ros.tools.bag_messages import (
     COMPRESSED_TOPIC,
     IMAGE_TOPIC,
@@ -118,28 +118,14 @@ def _decoded(image: Path | NDArray[np.uint8]) -> NDArray[np.uint8]:
     return decoded
 
 
-def parse_box(text: str) -> Box:
-    """A box from "x,y,w,h" on a command line."""
-    try:
-        x, y, w, h = (float(number) for number in text.split(","))
-        return Box(x, y, w, h)
-    except ValueError as error:
-        raise argparse.ArgumentTypeError(f"{text!r} is not x,y,w,h in px: {error}") from None
-
-
 def main(argv: Sequence[str] | None = None) -> int:
     """Command line."""
-    parser = argparse.ArgumentParser(
-        prog="make_bag",
-        description=__doc__,
-        epilog=EXAMPLE,
-        formatter_class=argparse.RawDescriptionHelpFormatter,
-    )
+    parser = command("make_bag", __doc__, EXAMPLE)
     parser.add_argument(
         "source", type=Path, help="folder (img/*.jpg, groundtruth_rect.txt), video"
     )
     parser.add_argument("bag", type=Path, help="folder to make")
-    parser.add_argument("--init", type=parse_box, help="x,y,w,h of the target in the first frame")
+    add_init(parser)
     parser.add_argument("--rate", type=float, help="frames/s (default: the video's own, or 30)")
     parser.add_argument("--raw", action="store_true", help="Image messages, not CompressedImage")
     options = parser.parse_args(argv)
@@ -157,7 +143,7 @@ def main(argv: Sequence[str] | None = None) -> int:
         print(f"make_bag: {error}", file=sys.stderr)
         return 1
     print(f"{frames} frames in {options.bag}")
-    return 130 if stop else 0
+    return INTERRUPTED if stop else 0
 
 
 if __name__ == "__main__":

@@ -4,7 +4,6 @@
 
 from __future__ import annotations
 
-import argparse
 import sys
 from collections.abc import Sequence
 from pathlib import Path
@@ -15,10 +14,12 @@ import numpy as np
 from tqdm import tqdm
 
 from het_ros.scene import STORIES, Frame, Lens, Scene, SceneConfig
+from het_ros.tools.arguments import INTERRUPTED, command
 from het_ros.tools.bag_messages import (
     COMPRESSED_TOPIC,
     INIT_BOX_TOPIC,
     TRUTH_BOX_TOPIC,
+    VISIBILITY_TOPIC,
     box_message,
     compressed_image_message,
     header,
@@ -28,7 +29,6 @@ from het_ros.tools.interrupt import StopRequest
 from het_ros.tools.make_bag import FIRST_STAMP, FRAME_ID
 
 CAMERA_INFO_TOPIC = "/camera_info"
-VISIBILITY_TOPIC = "/ground_truth/visibility"
 
 EXAMPLE = """examples:
   python -m het_ros.tools.make_scene_bag bags/follow_walk --seed 11 --rate 15 --quality 36
@@ -121,12 +121,7 @@ def visibility_message(visible: float, stamp: int) -> Any:
 
 def main(argv: Sequence[str] | None = None) -> int:
     """Command line."""
-    parser = argparse.ArgumentParser(
-        prog="make_scene_bag",
-        description=__doc__,
-        epilog=EXAMPLE,
-        formatter_class=argparse.RawDescriptionHelpFormatter,
-    )
+    parser = command("make_scene_bag", __doc__, EXAMPLE)
     parser.add_argument("bag", type=Path, help="folder to make")
     parser.add_argument("--story", default="follow_walk", help=f"one of {', '.join(STORIES)}")
     parser.add_argument("--seed", type=int, default=0, help="of everything that is random")
@@ -151,7 +146,7 @@ def main(argv: Sequence[str] | None = None) -> int:
         print(f"make_scene_bag: {error}", file=sys.stderr)
         return 1
     print(f"{frames} frames in {options.bag}")
-    return 130 if stop else 0
+    return INTERRUPTED if stop else 0
 
 
 if __name__ == "__main__":

@@ -4,7 +4,6 @@
 
 from __future__ import annotations
 
-import argparse
 import sys
 import time
 from collections.abc import Callable, Sequence
@@ -15,10 +14,10 @@ from rclpy.executors import SingleThreadedExecutor
 from rclpy.signals import SignalHandlerOptions
 from tqdm import tqdm
 
+from het_ros.tools.arguments import INTERRUPTED, add_bag, command
 from het_ros.tools.bag_reader import BagReader, header_stamp
 from het_ros.tools.bag_writer import BagWriter
 from het_ros.tools.interrupt import StopRequest
-from het_ros.tools.make_bag import parse_box
 from het_ros.tools.outputs import DEFAULT_TRACKER
 from het_ros.tools.player import LONGEST_SPIN, NobodyListensError, Player, Spin
 from het_ros.tools.recorder import Recorder
@@ -139,17 +138,9 @@ def main(argv: Sequence[str] | None = None) -> int:
     """Command line."""
     arguments = list(sys.argv[1:] if argv is None else argv)
     cut = arguments.index("--ros-args") if "--ros-args" in arguments else len(arguments)
-    parser = argparse.ArgumentParser(
-        prog="play",
-        description=__doc__,
-        epilog=EXAMPLE,
-        formatter_class=argparse.RawDescriptionHelpFormatter,
-    )
-    parser.add_argument("bag", type=Path, help="folder of a rosbag2")
-    parser.add_argument("--out", type=Path, default=Path("out/play"), help="results folder")
+    parser = command("play", __doc__, EXAMPLE)
+    add_bag(parser, out="out/play")
     parser.add_argument("--rate", type=float, default=1.0, help="2 plays twice as fast")
-    parser.add_argument("--image-topic", help="which images, if the bag has several")
-    parser.add_argument("--init", type=parse_box, help="x,y,w,h of the target in the first frame")
     parser.add_argument("--tracker", default=DEFAULT_TRACKER, help="the tracker node's full name")
     parser.add_argument("--wait", type=float, default=WAIT, help="s to wait for the tracker")
     options = parser.parse_args(arguments[:cut])
@@ -172,7 +163,7 @@ def main(argv: Sequence[str] | None = None) -> int:
         print(f"play: {error}", file=sys.stderr)
         return 1
     print("\n".join([*summary.lines(), f"results   {folder.path}"]))
-    return 130 if stop else 0
+    return INTERRUPTED if stop else 0
 
 
 if __name__ == "__main__":

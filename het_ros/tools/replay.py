@@ -8,11 +8,9 @@ one by one. Nothing depends on timing: the same bag and parameters give the same
 
 from __future__ import annotations
 
-import argparse
 import os
 import sys
 from collections.abc import Sequence
-from pathlib import Path
 from typing import Any
 
 import rclpy
@@ -23,11 +21,11 @@ from tqdm import tqdm
 
 from het_ros.ros.threads import one_thread
 from het_ros.ros.tracker_node import TrackerNode
+from het_ros.tools.arguments import INTERRUPTED, add_bag, add_parameters, command
 from het_ros.tools.bag_messages import stamp_of
 from het_ros.tools.bag_reader import BagReader, header_stamp
 from het_ros.tools.bag_writer import BagWriter
 from het_ros.tools.interrupt import StopRequest
-from het_ros.tools.make_bag import parse_box
 from het_ros.tools.message_types import message_class
 from het_ros.tools.outputs import DEFAULT_TRACKER, OUTPUT_TYPES
 from het_ros.tools.player import timeline
@@ -116,20 +114,9 @@ def _feed(bag: BagReader, node: TrackerNode, init: Box | None, stop: StopRequest
 
 def main(argv: Sequence[str] | None = None) -> int:
     """Command line."""
-    parser = argparse.ArgumentParser(
-        prog="replay",
-        description=__doc__,
-        epilog=EXAMPLE,
-        formatter_class=argparse.RawDescriptionHelpFormatter,
-    )
-    parser.add_argument("bag", type=Path, help="folder of a rosbag2")
-    parser.add_argument("--out", type=Path, default=Path("out/replay"), help="results folder")
-    parser.add_argument("--image-topic", help="which images, if the bag has several")
-    parser.add_argument("--init", type=parse_box, help="x,y,w,h of the target in the first frame")
-    parser.add_argument(
-        "-p", dest="parameters", action="append", default=[], metavar="NAME:=VALUE",
-        help="a parameter of the node",
-    )  # fmt: skip
+    parser = command("replay", __doc__, EXAMPLE)
+    add_bag(parser, out="out/replay")
+    add_parameters(parser)
     options = parser.parse_args(argv)
     one_thread()
     folder = ResultsFolder(options.out)
@@ -140,7 +127,7 @@ def main(argv: Sequence[str] | None = None) -> int:
         print(f"replay: {error}", file=sys.stderr)
         return 1
     print("\n".join([*summary.lines(), f"results   {folder.path}"]))
-    return 0 if whole else 130
+    return 0 if whole else INTERRUPTED
 
 
 if __name__ == "__main__":

@@ -15,10 +15,17 @@ import sys
 from collections.abc import Sequence
 from pathlib import Path
 
+from het_ros.tools.arguments import (
+    INTERRUPTED,
+    add_image_topic,
+    add_init,
+    add_parameters,
+    command,
+)
 from het_ros.tools.bag_reader import BagReader
 from het_ros.tools.footage import open_footage
 from het_ros.tools.interrupt import StopRequest
-from het_ros.tools.make_bag import make_bag, parse_box
+from het_ros.tools.make_bag import make_bag
 from het_ros.tools.play import play
 from het_ros.tools.player import NobodyListensError
 from het_ros.tools.report import ResultsFolder, remove_bag, write_report
@@ -110,28 +117,20 @@ def _bag_of_footage(source: Path, folder: ResultsFolder, options: argparse.Names
 
 
 def _parse(argv: Sequence[str] | None) -> argparse.Namespace:
-    parser = argparse.ArgumentParser(
-        prog="run",
-        description=__doc__,
-        epilog=EXAMPLE,
-        formatter_class=argparse.RawDescriptionHelpFormatter,
-    )
+    parser = command("run", __doc__, EXAMPLE)
     source = parser.add_mutually_exclusive_group()
     source.add_argument("--bag", type=Path, help=f"a rosbag2 (default: {SHIPPED_BAG})")
     source.add_argument("--video", type=Path, help="a video file; needs --init")
     source.add_argument(
         "--sequence", type=Path, help="a folder with img/ and groundtruth_rect.txt"
     )
-    parser.add_argument("--init", type=parse_box, help="x,y,w,h of the target in the first frame")
+    add_init(parser)
     parser.add_argument("--out", type=Path, default=Path("out/run"), help="results folder")
     parser.add_argument("--fps", type=float, help="frames/s of a video or sequence")
     parser.add_argument("--rate", type=float, default=1.0, help="2 plays twice as fast")
-    parser.add_argument("--image-topic", help="which images, if the bag has several")
+    add_image_topic(parser)
     parser.add_argument("--tracker", type=Path, help="executable (default: the installed one)")
-    parser.add_argument(
-        "-p", dest="parameters", action="append", default=[], metavar="NAME:=VALUE",
-        help="a parameter of the tracker",
-    )  # fmt: skip
+    add_parameters(parser)
     options = parser.parse_args(argv)
     if options.video and not options.init:
         parser.error("--video needs --init x,y,w,h: the target in its first frame, px")
@@ -161,12 +160,12 @@ def main(argv: Sequence[str] | None = None) -> int:
         print(f"run: {error}", file=sys.stderr)
         return 1
     except KeyboardInterrupt:
-        return 130
+        return INTERRUPTED
     for warning in _warnings(folder.path / "tracker.log"):
         print(f"tracker   {warning}")
     seen = [folder.video, folder.picture, folder.csv, folder.bag, folder.path / "tracker.log"]
     print("\n".join([*summary.lines(), "look at   " + "\n          ".join(map(str, seen))]))
-    return 0 if whole else 130
+    return 0 if whole else INTERRUPTED
 
 
 if __name__ == "__main__":

@@ -1,0 +1,58 @@
+# Copyright 2026 het_ros maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""What the command lines of this package share: parser and arguments of a bag."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+from typing import Any
+
+from het_ros.tracking.box import Box
+
+INTERRUPTED = 130  # the exit code of a shell's own commands after Ctrl-C
+
+
+def command(name: str, description: str | None, examples: str) -> argparse.ArgumentParser:
+    """A parser whose --help shows description and examples as they are written."""
+    return argparse.ArgumentParser(
+        prog=name,
+        description=description,
+        epilog=examples,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+
+
+def add_bag(parser: argparse.ArgumentParser, out: str) -> None:
+    """Add bag, --out, --image-topic and --init."""
+    parser.add_argument("bag", type=Path, help="folder of a rosbag2")
+    parser.add_argument("--out", type=Path, default=Path(out), help="results folder")
+    add_image_topic(parser)
+    add_init(parser)
+
+
+def add_image_topic(parser: Any) -> None:
+    """Add --image-topic."""
+    parser.add_argument("--image-topic", help="which images, if the bag has several")
+
+
+def add_init(parser: Any) -> None:
+    """Add --init."""
+    parser.add_argument("--init", type=parse_box, help="x,y,w,h of the target in the first frame")
+
+
+def add_parameters(parser: Any) -> None:
+    """Add -p, any number of times."""
+    parser.add_argument(
+        "-p", dest="parameters", action="append", default=[], metavar="NAME:=VALUE",
+        help="a parameter of the tracker",
+    )  # fmt: skip
+
+
+def parse_box(text: str) -> Box:
+    """A box from "x,y,w,h" on a command line."""
+    try:
+        x, y, w, h = (float(number) for number in text.split(","))
+        return Box(x, y, w, h)
+    except ValueError as error:
+        raise argparse.ArgumentTypeError(f"{text!r} is not x,y,w,h in px: {error}") from None
