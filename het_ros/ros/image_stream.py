@@ -13,7 +13,6 @@ from typing import Any
 from rclpy.clock import Clock, ClockType
 from rclpy.node import Node
 from rclpy.qos import QoSProfile, ReliabilityPolicy
-from rclpy.qos_overriding_options import QoSOverridingOptions
 from sensor_msgs.msg import CompressedImage, Image
 from std_msgs.msg import Header
 
@@ -21,7 +20,7 @@ from het_ros.ros.frames import Conversion, Frame, ImageMessage
 from het_ros.ros.hints import Hints
 from het_ros.ros.losses import Losses
 from het_ros.ros.messages import stamp_ns
-from het_ros.ros.quality import explain_silence, subscription_events
+from het_ros.ros.quality import explain_silence, overridable, subscription_events
 
 # Depth 1: with a deeper queue a busy node works on old images, and latency grows by the depth.
 NEWEST_ONLY = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
@@ -101,7 +100,7 @@ class ImageStream:
             self._on_message,
             copy(NEWEST_ONLY),  # overrides are written into it
             event_callbacks=subscription_events(self._node, topic),
-            qos_overriding_options=QoSOverridingOptions.with_default_policies(),
+            qos_overriding_options=overridable(),
         )
         self._open.callback(self._node.destroy_subscription, self._subscription)
         if self._timeout > 0:

@@ -18,10 +18,9 @@ from geometry_msgs.msg import (
 )
 from rclpy.node import Node
 from rclpy.qos import QoSProfile, ReliabilityPolicy
-from rclpy.qos_overriding_options import QoSOverridingOptions
 from sensor_msgs.msg import Image
 
-from het_ros.ros.quality import publisher_events
+from het_ros.ros.quality import overridable, publisher_events
 
 Tap = Callable[[str, Any], None]
 
@@ -58,7 +57,7 @@ class Outputs:
             f"~/{topic}",
             copy(RELIABLE),  # overrides are written into it
             event_callbacks=publisher_events(self._node, f"~/{topic}"),
-            qos_overriding_options=QoSOverridingOptions.with_default_policies(),
+            qos_overriding_options=overridable(),
         )
 
     def __contains__(self, topic: str) -> bool:

@@ -9,7 +9,25 @@ from typing import Any
 from rclpy.event_handler import PublisherEventCallbacks, SubscriptionEventCallbacks
 from rclpy.node import Node
 from rclpy.qos import QoSPolicyKind, qos_policy_name_from_kind
+from rclpy.qos_overriding_options import QoSOverridingOptions
 from rclpy.subscription import Subscription
+
+POLICIES = (
+    QoSPolicyKind.HISTORY,
+    QoSPolicyKind.DEPTH,
+    QoSPolicyKind.RELIABILITY,
+    QoSPolicyKind.DURABILITY,
+    QoSPolicyKind.DEADLINE,
+    QoSPolicyKind.LIVELINESS,
+)
+
+
+def overridable() -> QoSOverridingOptions:
+    """Parameters for every policy by which publisher and subscriber may not fit.
+
+    rclpy's own default leaves durability, deadline and liveliness out.
+    """
+    return QoSOverridingOptions(policy_kinds=POLICIES)
 
 
 def subscription_events(node: Node, topic: str) -> SubscriptionEventCallbacks:

@@ -15,7 +15,6 @@ from rcl_interfaces.msg import SetParametersResult
 from rclpy.clock import Clock, ClockType
 from rclpy.parameter import Parameter
 from rclpy.qos import QoSProfile
-from rclpy.qos_overriding_options import QoSOverridingOptions
 from sensor_msgs.msg import CameraInfo, Image, RegionOfInterest
 from std_srvs.srv import SetBool, Trigger
 
@@ -29,7 +28,7 @@ from het_ros.ros.messages import BoxError, box_from_polygon, box_from_roi, stamp
 from het_ros.ros.outputs import OUTPUTS, RELIABLE, Outputs, Tap
 from het_ros.ros.parameters import NodeConfig, declare, read
 from het_ros.ros.pursuit import Pursuit
-from het_ros.ros.quality import subscription_events
+from het_ros.ros.quality import overridable, subscription_events
 from het_ros.ros.space import Space
 from het_ros.tracking.box import Box
 from het_ros.tracking.config import TrackerConfig
@@ -110,7 +109,7 @@ class TrackerNode(ManagedNode):
             DiagnosticArray,
             "/diagnostics",
             copy(RELIABLE),
-            qos_overriding_options=QoSOverridingOptions.with_default_policies(),
+            qos_overriding_options=overridable(),
         )
         self.configured.callback(self.destroy_publisher, self._diagnostics)
         for kind, name, serve in (
@@ -164,7 +163,7 @@ class TrackerNode(ManagedNode):
             callback,
             copy(qos),  # overrides are written into it
             event_callbacks=subscription_events(self, topic),
-            qos_overriding_options=QoSOverridingOptions.with_default_policies(),
+            qos_overriding_options=overridable(),
         )
         self.activated.callback(self.destroy_subscription, subscription)
 

@@ -290,7 +290,7 @@ def test_an_override_holds_for_its_topic_alone(graph):
 
 
 def test_a_subscriber_that_asks_for_more_is_explained(graph, warnings):
-    graph.add(TrackerNode(context=graph.context))
+    node = graph.add(TrackerNode(context=graph.context))
     viewer = graph.add(Node("viewer", context=graph.context))
     latched = QoSProfile(
         depth=1,
@@ -299,9 +299,19 @@ def test_a_subscriber_that_asks_for_more_is_explained(graph, warnings):
     )
     viewer.create_subscription(Image, "tracker/debug_image", print, latched)
     graph.spin_until(lambda: any("durability" in text for text in warnings), "the explanation")
-    assert any(
-        "-p qos_overrides./tracker/debug_image.publisher.durability:=" in t for t in warnings
+    parameter = "qos_overrides./tracker/debug_image.publisher.durability"
+    assert any(f"-p {parameter}:=" in text for text in warnings)
+    assert node.has_parameter(parameter)
+
+
+def test_an_output_can_be_latched(graph):
+    durability = Parameter(
+        "qos_overrides./tracker/status.publisher.durability", value="transient_local"
     )
+    node = graph.add(TrackerNode(context=graph.context, parameter_overrides=[durability]))
+    offered = {p.topic_name: p.qos_profile.durability.name for p in node.publishers}
+    assert offered["/tracker/status"] == "TRANSIENT_LOCAL"
+    assert offered["/tracker/box"] == "VOLATILE"
 
 
 def test_every_topic_has_qos_parameters(graph):
