@@ -35,6 +35,7 @@ _PLACES: tuple[tuple[str, Any, str], ...] = (
     ("colour", target, "cell_means"),
     ("colour", target, "box_means"),
     ("colour", ColourModel, "learn"),
+    ("flow", target, "trace"),
     ("peak", target, "find_peak"),
     ("peak", target, "detect"),
     ("peak", combination, "weights"),

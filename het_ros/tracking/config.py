@@ -110,6 +110,12 @@ class TrackerConfig:
     colour_rate: float = parameter(
         0.02, "weight of the new frame in the colour histograms", low=0, high=1
     )
+    flow_weight: float = parameter(
+        0.3,
+        "how much a place gains by optical flow in the dense votes; 0 is without",
+        low=0,
+        high=5,
+    )
     # Scale.
     scales: int = parameter(
         17, "number of sizes tried a frame; 1 keeps the size of the first box", low=1, high=65
@@ -120,6 +126,9 @@ class TrackerConfig:
     )
     scale_rate: float = parameter(
         0.02, "weight of the new frame in the scale filter", low=0, high=1
+    )
+    growth_limit: float = parameter(
+        0.42, "the target's size changes at most this fast", unit="1/s", low=0, high=100
     )
     # Top layer: adaptive Kalman filter.
     acceleration: float = parameter(
@@ -168,8 +177,8 @@ class TrackerConfig:
     twin: float = parameter(
         0.9, "not learnt where another place scores above this share of the best", low=0, high=10
     )
-    return_template: float = parameter(
-        0.8, "found again only where the score is above this share", low=0, high=2
+    return_probability: float = parameter(
+        0.65, "found again where it is the target with this probability", low=0, high=1
     )
     lost_after: float = parameter(
         2.0, "a target that stays hidden is coasted this long, then LOST", unit="s", low=0, high=60
@@ -236,6 +245,7 @@ class TrackerConfig:
             weight_low=0.1,
             weight_high=0.9,
             colour_weight=0.0,
+            flow_weight=0.0,
             scales=1,
             acceleration=20.0,
             measurement_noise=0.05,

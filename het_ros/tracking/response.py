@@ -61,6 +61,7 @@ def find_peak(
     colour: Plane,
     colour_weight: float,
     apart: tuple[int, int],
+    prior: Plane | float = 1.0,
 ) -> Peak:
     """The place of the target that base ensembles and colours together find most likely.
 
@@ -70,9 +71,10 @@ def find_peak(
         colour: (rows', columns') likelihood for each place of the target's corner.
         colour_weight: share of the colours in the vote, 0..1.
         apart: (x, y), px: nearer than this a place is the same as the peak, not its rival.
+        prior: (rows', columns') or one number that a place's vote is multiplied by.
     """
     template = vote(scores, offsets, (colour.shape[0], colour.shape[1]))
-    response = (1 - colour_weight) * template + colour_weight * colour
+    response = ((1 - colour_weight) * template + colour_weight * colour) * prior
     row, column = divmod(int(response.argmax()), response.shape[1])
     corner = np.array(
         [

@@ -12,25 +12,28 @@ import numpy as np
 from numpy.typing import NDArray
 
 from het_ros.tracking import combination
-from het_ros.tracking.base_ensembles import BaseEnsembles, NaiveBayes, detect, scores_at
+from het_ros.tracking.base_ensembles import detect, scores_at
 from het_ros.tracking.box import Box
 from het_ros.tracking.channels import channel_stack, names_for
-from het_ros.tracking.colour import ColourModel, box_means, cell_means
-from het_ros.tracking.compressive import (
-    CompressiveFeatures,
-    Features,
-    draw_measurement_matrix,
-    integral_images,
-)
+from het_ros.tracking.colour import box_means, cell_means
+from het_ros.tracking.compressive import Features, integral_images
 from het_ros.tracking.config import TrackerConfig
 from het_ros.tracking.cost import check_cost
 from het_ros.tracking.estimate import Estimate, Patch, State
-from het_ros.tracking.motion import AdaptiveKalman
-from het_ros.tracking.response import find_peak
-from het_ros.tracking.ridge import RidgeEnsembles
-from het_ros.tracking.scale import ScaleFilter
+from het_ros.tracking.flow import Flow, Sight, gray_of, trace
+from het_ros.tracking.layers import (
+    base_ensembles,
+    colour_model,
+    compressive_features,
+    grid,
+    motion_model,
+    scale_filter,
+    whole,
+)
+from het_ros.tracking.response import Peak, find_peak
+from het_ros.tracking.search import search_centre
 from het_ros.tracking.sub_patches import draw_sub_patches, to_be_updated
-from het_ros.tracking.trust import Evidence, Trust, TrustLimits, Verdict
+from het_ros.tracking.trust import Evidence, Trust, Verdict
 from het_ros.tracking.window import Window, cut_window
 
 Image = NDArray[np.uint8]
@@ -39,29 +42,8 @@ Witness = Callable[[Box], bool]
 
 # A rival is a place of the target at least this part of its side away from the best one.
 _RIVAL_APART = 0.35
-# Places around the one where a target was last seen, in search radii.
-_SPIRAL = np.array(
-    [
-        (0, 0),
-        (1, 0),
-        (-1, 0),
-        (0, 1),
-        (0, -1),
-        (1, 1),
-        (-1, -1),
-        (1, -1),
-        (-1, 1),
-        (2, 0),
-        (-2, 0),
-        (2, 1),
-        (-2, -1),
-        (2, -1),
-        (-2, 1),
-        (3, 0),
-        (-3, 0),
-    ],
-    float,
-)
+_FLOW_SIGMA = 0.12  # target sides, how exact flow is
+_FLOW_SHARE = 0.2  # of the points: fewer that agree say nothing
 _SMALLEST_SIDE = 3.0  # px: below this a target is not shrunk any more
 
 
@@ -115,46 +97,23 @@ class Target:
         self._config = config
         self._first_size = np.array([box.w, box.h])
         self._growth = 1.0
-        side = math.sqrt(box.area)
         rng = np.random.default_rng(config.seed)
-        self._cells, self._unit = _grid(config, box)
+        self._cells, self._unit = grid(config, box)
         check_cost(config, self._cells)
         self._radius = config.search_radius / config.cell
         self._sub_patches = draw_sub_patches(
             (self._cells[0], self._cells[1]), config.sub_patches, config.sub_patch_fraction, rng
         )
         self._channels = names_for(config.channels, image)
-        self._features = CompressiveFeatures(
-            draw_measurement_matrix(
-                self._sub_patches.size,
-                len(self._channels),
-                config.features,
-                config.rectangles,
-                rng,
-                config.largest_rectangle,
-            ),
-            np.float32 if config.base_ensemble == "ridge" else np.float64,
+        self._features = compressive_features(
+            config, self._sub_patches.size, len(self._channels), rng
         )
-        self._ensembles = _base_ensembles(config, self._cells)
-        self._colour = ColourModel(
-            _whole(self._cells, config.cell),
-            config.colour_rate,
-        )
-        self._scale = ScaleFilter(
-            _whole(self._cells),
-            config.scales,
-            config.scale_step,
-            config.scale_context,
-            config.scale_rate,
-        )
-        self._trust = Trust(_limits(config)) if config.trust else None
-        self._motion = AdaptiveKalman(
-            np.array(box.centre),
-            config.acceleration * side,
-            config.measurement_noise * side,
-            config.nominal_dt,
-            config.longest_dt,
-        )
+        self._ensembles = base_ensembles(config, self._cells)
+        self._colour = colour_model(config, self._cells)
+        self._scale = scale_filter(config, self._cells)
+        self._trust = Trust(config) if config.trust else None
+        self._motion = motion_model(config, box)
+        self._before: Sight | None = None
         self._seen_at = np.array(box.centre)
         frame = self._look(image, self._seen_at)
         self._learn(frame, self._corner_in(frame.window), np.ones(config.sub_patches, bool), 1.0)
@@ -168,25 +127,28 @@ class Target:
             witness: see :meth:`HierarchicalEnsembleTracker.update`.
         """
         self._motion.predict(dt)
-        was_hidden = self._trust is not None and self._trust.hidden_frames > 0
-        frame = self._look(image, self._search_centre())
+        step = self._motion.step(dt)
+        hidden = self._trust.hidden_frames if self._trust else 0
+        reach = self._radius * self._unit * self._growth
+        frame = self._look(image, search_centre(hidden, self._motion.centre, self._seen_at, reach))
         found = self._measure(frame)
         centre = frame.window.to_image(found.corner + np.array(self._cells) / 2)
         verdict = Verdict.SEEN
         if self._trust and found.evidence:
             witnessed = witness is None or witness(self._box_at(centre))
-            verdict = self._trust.judge(found.evidence, self._motion.step(dt), witnessed)
+            verdict = self._trust.judge(found.evidence, step, witnessed)
         if verdict is Verdict.HIDDEN:
             self._motion.coast()
         else:
-            if was_hidden:
+            if hidden:
                 self._motion.restart(centre)
             else:
                 self._motion.correct(centre, float(found.omega.mean()))
             self._seen_at = centre
         if not self._trust and not self.box.touches_image(image.shape[1], image.shape[0]):
             return self.estimate(0.0, State.LOST)
-        score = self._update_model(frame, found, verdict)
+        score = self._update_model(frame, found, verdict, step)
+        self._before = None if verdict is Verdict.HIDDEN else self._sight(frame)
         state = self._trust.state if self._trust else State.TRACKING
         patches = () if verdict is Verdict.HIDDEN else self._patches(frame.window, found)
         return self.estimate(score, state, patches)
@@ -206,19 +168,6 @@ class Target:
         return Estimate(
             self.box, self._motion.velocity, self._motion.covariance, score, state, patches
         )
-
-    def _search_centre(self) -> Floats:
-        """Where the target is looked for, image px.
-
-        A hidden target is looked for at its prediction in every other frame, and in between
-        around the place where it was last seen, farther and farther from it.
-        """
-        hidden = self._trust.hidden_frames if self._trust else 0
-        if hidden % 2 == 0:
-            return self._motion.centre
-        step = (hidden // 2) % min(1 + hidden // 2, len(_SPIRAL))
-        reach = self._radius * self._unit * self._growth
-        return np.asarray(self._seen_at + _SPIRAL[step] * reach)
 
     def _look(self, image: Image, centre: Floats) -> Frame:
         """The window with every place at which a sub-patch is looked for, and its maps."""
@@ -275,37 +224,89 @@ class Target:
         colour = np.zeros((rows, columns), np.float32)
         if config.colour_weight:
             likelihood = cell_means(self._colour.likelihood(frame.window.pixels), config.cell)
-            colour = box_means(likelihood, _whole(self._cells), (rows, columns))
+            colour = box_means(likelihood, whole(self._cells), (rows, columns))
+        prior = self._prior(frame.window, self._flow(frame), (colour.shape[0], colour.shape[1]))
         offsets = self._sub_patches.offsets.astype(np.intp)
         apart = (
             max(2, round(_RIVAL_APART * self._cells[0])),
             max(2, round(_RIVAL_APART * self._cells[1])),
         )
-        peak = find_peak(scores, offsets, colour, config.colour_weight, apart)
+        peak = find_peak(scores, offsets, colour, config.colour_weight, apart, prior)
         omega = np.clip(peak.patch_scores, config.weight_low, config.weight_high)
-        evidence = Evidence(peak.template, peak.colour, peak.rival)
+        evidence = self._evidence(frame.window, peak, omega)
         corners = self._sub_patches.corners(peak.corner)
         return Measurement(peak.corner, corners, omega, evidence, scores)
 
-    def _update_model(self, frame: Frame, found: Measurement, verdict: Verdict) -> float:
+    def _sight(self, frame: Frame) -> Sight | None:
+        """What optical flow needs of this frame in the next one."""
+        if not self._config.flow_weight:
+            return None
+        return Sight(self._in_px(frame.window), gray_of(frame.window.pixels), self.box)
+
+    def _flow(self, frame: Frame) -> Flow | None:
+        """Where the target's pixels of the last frame went, if flow is used and finds it."""
+        if self._before is None:
+            return None
+        moved = self._motion.centre - np.array(self._before.box.centre)
+        window = self._in_px(frame.window)
+        flow = trace(self._before, window, gray_of(frame.window.pixels), moved)
+        return flow if flow and flow.share > _FLOW_SHARE else None
+
+    def _in_px(self, window: Window) -> Window:
+        """A window in cells with its places counted in px."""
+        return window.in_cells(1 / self._config.cell)
+
+    def _prior(self, window: Window, flow: Flow | None, shape: tuple[int, int]) -> Features:
+        """(rows, columns) float32: what a place's vote is multiplied by, 1 and more.
+
+        It multiplies: a post that slides over the target moves smoothly too, but does not look
+        like it.
+        """
+        if flow is None:
+            return np.ones(shape, np.float32)
+        corner = window.to_window(flow.centre) - np.array(self._cells) / 2
+        sigma = _FLOW_SIGMA * math.sqrt(self._cells[0] * self._cells[1])
+        down = np.exp(-0.5 * ((np.arange(shape[0]) - corner[1]) / sigma) ** 2)
+        across = np.exp(-0.5 * ((np.arange(shape[1]) - corner[0]) / sigma) ** 2)
+        weight = self._config.flow_weight * flow.share
+        return np.asarray(1 + weight * np.outer(down, across), np.float32)
+
+    def _evidence(self, window: Window, peak: Peak, omega: Floats) -> Evidence:
+        """What speaks for a peak; distances in target sides."""
+        centre = window.to_image(peak.corner + np.array(self._cells) / 2)
+        side = math.sqrt(self.box.area)
+        return Evidence(
+            peak.template,
+            peak.colour,
+            peak.rival,
+            moved=float(np.hypot(*(centre - self._motion.centre))) / side,
+            away=float(np.hypot(*(centre - self._seen_at))) / side,
+            spread=float(omega.std()),
+        )
+
+    def _update_model(
+        self, frame: Frame, found: Measurement, verdict: Verdict, dt: float
+    ) -> float:
         """The three update mechanisms; returns the score of the estimate."""
         if self._trust:
             if verdict is Verdict.SEEN:
                 chosen = np.ones(self._config.sub_patches, bool)
-                self._learn(frame, found.corner, chosen, self._resize(frame, found.corner))
+                self._learn(frame, found.corner, chosen, self._resize(frame, found.corner, dt))
             return self._trust.score
         target = self._corner_in(frame.window)
         corners = self._sub_patches.corners(target)
         score = self._ensembles.likelihood(frame.features, corners)
         chosen = to_be_updated(scores_at(found.scores, corners))
-        self._learn(frame, target, chosen, self._resize(frame, target))
+        self._learn(frame, target, chosen, self._resize(frame, target, dt))
         return score
 
-    def _resize(self, frame: Frame, corner: Floats) -> float:
+    def _resize(self, frame: Frame, corner: Floats, dt: float) -> float:
         """Follow the target's change of size; returns the ratio to the size before."""
         if self._config.scales == 1:
             return 1.0
         ratio = self._scale.change(frame.planes, corner + np.array(self._cells) / 2)
+        fastest = math.exp(self._config.growth_limit * dt)
+        ratio = min(max(ratio, 1 / fastest), fastest)
         least = _SMALLEST_SIDE / float(self._first_size.min())
         growth = max(self._growth * ratio, min(self._growth, least))
         ratio, self._growth = growth / self._growth, growth
@@ -335,46 +336,3 @@ class Target:
             Patch(Box(x, y, width, height), weight)
             for (x, y), weight in zip(corners, found.omega.tolist(), strict=True)
         )
-
-
-def _grid(config: TrackerConfig, box: Box) -> tuple[tuple[float, float], Floats]:
-    """Size (w, h) of the target in cells, and the image px (x, y) that a cell covers at first.
-
-    At a working resolution the target is a whole number of cells.
-    """
-    if not config.working_side:
-        return (box.w / config.cell, box.h / config.cell), np.full(2, float(config.cell))
-    side = config.working_side / config.cell / math.sqrt(box.area)
-    width, height = (max(4, round(length * side)) for length in (box.w, box.h))
-    return (width, height), np.array([box.w / width, box.h / height])
-
-
-def _whole(cells: tuple[float, float], unit: int = 1) -> tuple[int, int]:
-    """A size (w, h) in cells of ``unit`` px in whole px; of the smallest target at least 1."""
-    return max(1, round(cells[0] * unit)), max(1, round(cells[1] * unit))
-
-
-def _base_ensembles(config: TrackerConfig, cells: tuple[float, float]) -> BaseEnsembles:
-    if config.base_ensemble == "ridge":
-        sigma = config.label_sigma * math.sqrt(cells[0] * cells[1])
-        return RidgeEnsembles(
-            1 - config.learning_rate, config.ridge, (sigma, sigma), config.target_emphasis
-        )
-    return NaiveBayes(
-        config.learning_rate,
-        config.positive_radius / config.cell,
-        config.negative_radius / config.cell,
-        config.sigma_floor,
-    )
-
-
-def _limits(config: TrackerConfig) -> TrustLimits:
-    return TrustLimits(
-        hidden=config.hidden,
-        learn_colour=config.learn_colour,
-        twin=config.twin,
-        doubt_template=config.doubt_template,
-        doubt_rival=config.doubt_rival,
-        return_template=config.return_template,
-        lost_after=config.lost_after,
-    )

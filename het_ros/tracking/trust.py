@@ -9,23 +9,26 @@ there. That is judged here, from raw evidence relative to what it was while all 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import Enum
 
+from het_ros.tracking.config import TrackerConfig
 from het_ros.tracking.estimate import State
 
 _RUNNING_RATE = 0.05  # of the means of the evidence, a frame
 _LONGEST_DOUBT = 0.5  # s; who is doubted for longer is not followed any more
-_JUST_HIDDEN = 0.2  # s
-_EASY_RETURN = 0.8  # share of return_template that is enough at once or without a rival
-_CLEAR_RIVAL = 0.5
+_RETURN_COLOUR = 0.6  # share of the colours' mean below which nobody comes back
+_TWIN_TIME = 1.2  # s after a twin was beside the target in which it may be either
+_FAR = 0.7  # target sides from the prediction; a target that comes back there ...
+_RETURN_FAR = 0.85  # ... must be recognised with this probability
 _ANY_RIVAL = 10.0  # shares beyond this say no more
 _YOUNG = 10  # frames in which the model has seen too little to be ambiguous about a rival
-_COLOUR_POWER = 1.0
 _NEVER_BELOW = 0.2  # relative template score that nothing can excuse
 _SURE = 100.0  # a logit beyond which nothing changes but that exp() overflows
 # Logistic regression of "IoU over 0.5" on the evidence, over the frames of many real tracks.
 _BIAS, _BY_TEMPLATE, _BY_COLOUR, _BY_RIVAL = -5.0, 6.9, 2.5, -2.5
+# The same of "this is the hidden target", on its evidence as in :func:`recognised`.
+_KNOWN = (1.0, 4.0, 2.37, -3.72, -2.0, -1.0, -4.92)
 
 
 class Verdict(Enum):
@@ -44,44 +47,37 @@ class Evidence:
         template: mean score of the base ensembles there, about 1 for the target as learnt.
         colour: the colours' likelihood there, 0..1.
         rival: highest mean score of the base ensembles elsewhere in the window.
+        moved: distance from the prediction, target sides.
+        away: distance from where the target was last seen, target sides.
+        spread: deviation of the sub-patches' weights there: of a target they agree.
     """
 
     template: float
     colour: float
     rival: float
-
-
-@dataclass(frozen=True)
-class TrustLimits:
-    """Thresholds of the verdict; see TrackerConfig for their meaning."""
-
-    hidden: float
-    learn_colour: float
-    twin: float
-    doubt_template: float
-    doubt_rival: float
-    return_template: float
-    lost_after: float
+    moved: float = 0.0
+    away: float = 0.0
+    spread: float = 0.0
 
 
 class Trust:
     """Judges each frame and keeps the state TRACKING, COASTING or LOST.
 
     Args:
-        limits: thresholds.
+        limits: the configuration, of which the thresholds are taken.
     """
 
-    def __init__(self, limits: TrustLimits) -> None:
+    def __init__(self, limits: TrackerConfig) -> None:
         self._limits = limits
         self._template = 1.0
         self._colour: float | None = None
         self._frames = 0
         self._hidden_for = 0.0
         self._doubted_for = 0.0
+        self._since_twin = math.inf
         self.hidden_frames = 0
         self.state = State.TRACKING
         self.score = 1.0
-        self.hidden_frames = 0
 
     def judge(self, evidence: Evidence, dt: float, witnessed: bool = True) -> Verdict:
         """Judge one frame; sets ``state`` and ``score``.
@@ -98,12 +94,16 @@ class Trust:
         # Without a colour model the colours neither speak for a place nor against it.
         colour = evidence.colour / self._colour if self._colour else 1.0
         rival = min(max(evidence.rival, 0.0) / max(evidence.template, 1e-6), _ANY_RIVAL)
-        verdict = self._verdict(template, colour, rival) if witnessed else Verdict.HIDDEN
+        relative = replace(evidence, template=template, colour=colour, rival=rival)
+        verdict = Verdict.HIDDEN
+        if witnessed and (self.state is State.TRACKING or self._is_back(relative)):
+            verdict = self._verdict(template, colour, rival)
         self._doubted_for = self._doubted_for + dt if verdict is Verdict.DOUBTED else 0.0
         if self._doubted_for > _LONGEST_DOUBT:
             verdict = Verdict.HIDDEN
         self.score = probability(evidence.template, colour, rival)
-        if rival > self._limits.twin:
+        self._since_twin = 0.0 if rival > self._limits.twin else self._since_twin + dt
+        if self._since_twin < _TWIN_TIME:
             self.score = min(self.score, 0.5)
         if verdict is Verdict.HIDDEN:
             self._hidden_for += dt
@@ -120,17 +120,20 @@ class Trust:
             self._colour += _RUNNING_RATE * (evidence.colour - self._colour)
         return verdict
 
+    def _is_back(self, relative: Evidence) -> bool:
+        """Whether a hidden target has come back; farther off only on stronger evidence."""
+        limits = self._limits
+        least = limits.return_probability
+        if relative.moved > _FAR:
+            least = max(least, _RETURN_FAR)
+        alike = relative.template * relative.colour >= limits.hidden
+        return alike and relative.colour >= _RETURN_COLOUR and recognised(relative) >= least
+
     def _verdict(self, template: float, colour: float, rival: float) -> Verdict:
         """The rules; template and colour relative to their means, rival to the peak."""
         limits = self._limits
-        if self.state is not State.TRACKING:
-            # One bad frame is more often the target's than a post's; and where nothing rivals
-            # the place it is clear enough.
-            easy = self._hidden_for < _JUST_HIDDEN or rival < _CLEAR_RIVAL
-            if template < limits.return_template * (_EASY_RETURN if easy else 1):
-                return Verdict.HIDDEN
         old = self._frames > _YOUNG
-        if template < _NEVER_BELOW or (old and template * colour**_COLOUR_POWER < limits.hidden):
+        if template < _NEVER_BELOW or (old and template * colour < limits.hidden):
             return Verdict.HIDDEN
         ambiguous = template < limits.doubt_template and rival > limits.doubt_rival
         # A post that comes in from the side takes the colours away first.
@@ -154,4 +157,26 @@ def probability(template: float, colour: float, rival: float) -> float:
         + _BY_COLOUR * min(colour, 1.2)
         + _BY_RIVAL * min(max(rival, 0.0), 1.5)
     )
+    return _logistic(logit)
+
+
+def recognised(relative: Evidence) -> float:
+    """Probability that what was found is the target that was hidden, 0..1.
+
+    Args:
+        relative: evidence, template and colour over their means, rival over the best.
+    """
+    bias, by_template, by_colour, by_rival, by_moved, by_away, by_spread = _KNOWN
+    return _logistic(
+        bias
+        + by_template * relative.template
+        + by_colour * min(relative.colour, 1.2)
+        + by_rival * min(relative.rival, 1.5)
+        + by_moved * min(relative.moved, _FAR)
+        + by_away * min(relative.away, _FAR)
+        + by_spread * relative.spread
+    )
+
+
+def _logistic(logit: float) -> float:
     return 1 / (1 + math.exp(-max(logit, -_SURE)))

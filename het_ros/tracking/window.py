@@ -42,7 +42,7 @@ class Window:
         """Window px (..., 2) to image px (..., 2)."""
         return np.asarray(points / np.array(self.scale) + np.array(self.origin))
 
-    def in_cells(self, cell: int) -> Window:
+    def in_cells(self, cell: float) -> Window:
         """The same window with places counted in cells of ``cell`` px."""
         return replace(self, scale=(self.scale[0] / cell, self.scale[1] / cell))
 

@@ -11,7 +11,7 @@ import reference
 from het_ros import Box, HierarchicalEnsembleTracker, TrackerConfig
 from het_ros.tracking import target as target_module
 from het_ros.tracking.channels import names_for
-from het_ros.tracking.compressive import draw_measurement_matrix
+from het_ros.tracking.compressive import CompressiveFeatures, draw_measurement_matrix
 from het_ros.tracking.sub_patches import draw_sub_patches
 
 RELATIVE = 1e-6
@@ -44,7 +44,7 @@ def seen(monkeypatch):
     """What the tracker's layers handed each other in the last frame."""
     last = {}
     detect, weights = target_module.detect, target_module.combination.weights
-    select, maps = target_module.to_be_updated, target_module.CompressiveFeatures.maps
+    select, maps = target_module.to_be_updated, CompressiveFeatures.maps
 
     def keep(name, value):
         last[name] = value
@@ -60,7 +60,7 @@ def seen(monkeypatch):
     )
     monkeypatch.setattr(target_module, "to_be_updated", lambda c: keep("chosen", select(c)))
     monkeypatch.setattr(
-        target_module.CompressiveFeatures,
+        CompressiveFeatures,
         "maps",
         lambda self, integrals: keep("features", maps(self, integrals)),
     )

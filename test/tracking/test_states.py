@@ -89,7 +89,8 @@ ALIKE = (("lookalike_at_column", 1), ("lookalike_crosses", 0), ("lookalike_cross
 def test_who_stays_in_sight_is_tracked_all_the_time():
     track = followed("plain_walk", 0)
     assert all(m.estimate.state is State.TRACKING for m in track)
-    assert np.mean([m.confident for m in track]) > 0.95
+    # Less where for a moment something beside looks like the target: it may be either.
+    assert np.mean([m.confident for m in track]) > 0.8
     assert np.mean([m.overlap for m in track]) > 0.5
 
 

@@ -1,19 +1,18 @@
 # Copyright 2026 het_ros maintainers
 # SPDX-License-Identifier: Apache-2.0
 import math
-from dataclasses import fields
 
 import pytest
 
 from het_ros import State, TrackerConfig
-from het_ros.tracking.trust import Evidence, Trust, TrustLimits, Verdict
+from het_ros.tracking.trust import Evidence, Trust, Verdict, recognised
 
 # Those named are what the tables below were written for, the others are the tracker's own.
-CONFIG = TrackerConfig(
-    hidden=0.5, doubt_template=0.75, doubt_rival=0.8, return_template=0.8, lost_after=2.0
+LIMITS = TrackerConfig(
+    hidden=0.5, doubt_template=0.75, doubt_rival=0.8, return_probability=0.65, lost_after=2.0
 )
-LIMITS = TrustLimits(**{f.name: getattr(CONFIG, f.name) for f in fields(TrustLimits)})
 GOOD = Evidence(template=1.0, colour=0.8, rival=0.2)
+BACK = {"template": 0.8, "colour": 1.0, "rival": 0.3}
 GONE = Evidence(template=0.1, colour=0.1, rival=0.1)
 
 
@@ -81,33 +80,51 @@ def test_hidden_frames_are_counted_until_the_target_is_back():
 
 @pytest.mark.parametrize("hidden", [0.5, 30.0], ids=["coasting", "lost"])
 @pytest.mark.parametrize(
-    ("template", "rival", "back"),
+    ("evidence", "back"),
     [
-        (0.5, 0.1, False),
-        (0.63, 0.1, False),
-        (0.66, 0.1, True),  # nothing rivals it
-        (0.66, 0.4, False),
-        (0.78, 0.6, False),
-        (0.82, 0.6, True),
-        (1.0, 0.1, True),
+        (Evidence(0.45, 0.8, 0.1), False),  # too little is left of it
+        (Evidence(1.0, 0.4, 0.1), False),  # its colours are not back
+        (Evidence(0.6, 0.8, 0.1), True),  # where it was, and nothing rivals it
+        (Evidence(0.8, 0.8, 0.5, moved=1.0, away=1.0), False),  # anybody over there
+        (Evidence(0.8, 0.8, 0.5, moved=0.5, away=1.0), True),
+        (Evidence(0.6, 0.8, 0.6, moved=0.6, away=0.6, spread=0.2), False),
+        (Evidence(1.0, 0.8, 0.1, moved=5.0, away=5.0), True),  # far, but nobody else
     ],
+    ids=str,
 )
-def test_back_only_on_strong_evidence(hidden, template, rival, back):
+def test_back_only_on_strong_evidence(hidden, evidence, back):
     trust = grown_up()
     while trust.hidden_frames * 0.1 < hidden:
         trust.judge(GONE, 0.1)
     away = State.LOST if hidden > LIMITS.lost_after else State.COASTING
     assert trust.state is away
-    trust.judge(Evidence(template, 0.8, rival), 0.1)
+    trust.judge(evidence, 0.1)
     assert trust.state is (State.TRACKING if back else away)
 
 
 def test_weak_evidence_that_would_do_while_tracking_does_not_bring_it_back():
-    weak = Evidence(0.6, 0.8, 0.1)
+    weak = Evidence(0.7, 0.8, 0.6, moved=1.0, away=1.0)
     assert grown_up().judge(weak, 0.1) is not Verdict.HIDDEN
     trust = grown_up()
     trust.judge(GONE, 0.1)
     assert trust.judge(weak, 0.1) is Verdict.HIDDEN
+
+
+@pytest.mark.parametrize("worse", ["moved", "away", "spread", "rival"])
+def test_less_is_recognised_the_more_speaks_against_it(worse):
+    known = [recognised(Evidence(**{**BACK, worse: value})) for value in (0.1, 0.3, 0.5)]
+    assert known == sorted(known, reverse=True)
+    assert known[0] > known[-1]
+
+
+def test_who_had_a_twin_beside_is_not_a_confident_box_for_a_while():
+    trust, scores = grown_up(), []
+    trust.judge(Evidence(1.0, 0.8, 0.95), 0.1)
+    for _ in range(20):
+        trust.judge(GOOD, 0.1)
+        scores.append(trust.score)
+    assert max(scores[:10]) <= 0.5
+    assert min(scores[13:]) > 0.5
 
 
 def test_the_time_hidden_counts_from_the_last_sight():

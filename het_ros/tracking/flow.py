@@ -1,0 +1,122 @@
+# Copyright 2026 het_ros maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""Where a target's own pixels went since the last frame.
+
+Score maps say which places look like the target; they do not know that it was next door one frame
+ago. Optical flow (pyramidal Lucas-Kanade) of points in its box knows nothing else. Points count
+where the flow back leads to where they came from (the forward-backward error of MedianFlow:
+Kalal, Mikolajczyk, Matas, 2010), and the median of their ways is the target's.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from het_ros.tracking.box import Box
+from het_ros.tracking.window import Window
+
+Floats = NDArray[np.float64]
+Points = NDArray[np.float32]
+
+_GRID = 10  # points a side
+_CORE = 0.8  # the points lie in this part of the box
+_PATCH = (13, 13)  # px around a point that are compared
+_LEVELS = 2  # of the pyramid above the window itself
+_STOP = (cv2.TERM_CRITERIA_COUNT + cv2.TERM_CRITERIA_EPS, 10, 0.03)
+_THERE_AND_BACK = 1.0  # px, error of the flow back
+_TOGETHER = 0.1  # target sides from the median: farther off a point is not the target's
+_FEWEST = 8  # points
+
+
+@dataclass(frozen=True)
+class Sight:
+    """A target in a frame.
+
+    Attributes:
+        window: search window, places counted in px.
+        gray: (H, W) uint8, its pixels.
+        box: the target, image px.
+    """
+
+    window: Window
+    gray: NDArray[np.uint8]
+    box: Box
+
+
+@dataclass(frozen=True)
+class Flow:
+    """What the points in a target's box say of it.
+
+    Attributes:
+        centre: (x, y) of the target, image px.
+        share: of the points that agree, 0..1.
+    """
+
+    centre: Floats
+    share: float
+
+
+def gray_of(pixels: NDArray[np.uint8]) -> NDArray[np.uint8]:
+    """(H, W) uint8 of a window (H, W, 3) BGR or (H, W)."""
+    if pixels.ndim == 2:
+        return pixels
+    return np.asarray(cv2.cvtColor(pixels, cv2.COLOR_BGR2GRAY), np.uint8)
+
+
+def trace(before: Sight, window: Window, gray: NDArray[np.uint8], moved: Floats) -> Flow | None:
+    """Follow the target of the last frame into this frame's window.
+
+    Args:
+        before: the target in the last frame.
+        window: this frame's search window, places in px.
+        gray: (H, W) uint8, its pixels.
+        moved: (x, y), image px, how far the target is expected to have moved; flow starts there.
+
+    Returns:
+        Where the target went, or None where fewer than 8 points agree.
+    """
+    start = _points(before)
+    scale = np.array(before.window.scale)
+    places = before.window.to_image(start.astype(np.float64)) + moved
+    guess = window.to_window(places).astype(np.float32)
+    there, found = _lucas_kanade(before.gray, gray, start, guess)
+    back, returned = _lucas_kanade(gray, before.gray, there, there - (guess - start))
+    error = np.hypot(*(back - start).T)
+    shifts = (there - guess)[found & returned & (error < _THERE_AND_BACK)]
+    if len(shifts) < _FEWEST:
+        return None
+    shift = np.median(shifts, axis=0)
+    side = np.sqrt(before.box.area * scale.prod())
+    agree = np.abs(shifts - shift).max(axis=1) < _TOGETHER * side
+    centre = np.array(before.box.centre) + moved + shift / np.array(window.scale)
+    return Flow(centre, float(agree.sum() / len(start)))
+
+
+def _points(sight: Sight) -> Points:
+    """(N, 2) float32, window px: a grid in the middle of the target's box."""
+    line = np.linspace(-0.5, 0.5, _GRID) * _CORE
+    box = sight.box
+    x, y = np.meshgrid(box.centre[0] + line * box.w, box.centre[1] + line * box.h)
+    places = sight.window.to_window(np.stack([x.ravel(), y.ravel()], axis=1))
+    return np.asarray(places, np.float32)
+
+
+def _lucas_kanade(
+    first: NDArray[np.uint8], second: NDArray[np.uint8], points: Points, guess: Points
+) -> tuple[Points, NDArray[np.bool_]]:
+    """Points (N, 2) of ``first`` in ``second``, and (N,) whether they were found."""
+    moved, status, _ = cv2.calcOpticalFlowPyrLK(
+        first,
+        second,
+        points[:, None],
+        guess[:, None].copy(),  # overwritten
+        winSize=_PATCH,
+        maxLevel=_LEVELS,
+        criteria=_STOP,
+        flags=cv2.OPTFLOW_USE_INITIAL_FLOW,
+    )
+    return np.asarray(moved, np.float32)[:, 0], status[:, 0] > 0

@@ -1,0 +1,25 @@
+# Copyright 2026 het_ros maintainers
+# SPDX-License-Identifier: Apache-2.0
+import numpy as np
+import pytest
+
+from het_ros.tracking.search import search_centre
+
+PREDICTED, SEEN, REACH = np.array([50.0, 40.0]), np.array([10.0, 20.0]), np.array([8.0, 6.0])
+
+
+@pytest.mark.parametrize("hidden", [0, 2, 4, 100])
+def test_every_other_frame_at_the_prediction(hidden):
+    np.testing.assert_array_equal(search_centre(hidden, PREDICTED, SEEN, REACH), PREDICTED)
+
+
+def test_first_where_it_was_last_seen():
+    np.testing.assert_array_equal(search_centre(1, PREDICTED, SEEN, REACH), SEEN)
+
+
+def test_farther_and_farther_and_then_again():
+    places = [search_centre(k, PREDICTED, SEEN, REACH) for k in range(1, 400, 2)]
+    distances = [np.abs((place - SEEN) / REACH).max() for place in places]
+    assert max(distances[:3]) == 1
+    assert max(distances) == 3
+    assert distances.count(0) > 5
