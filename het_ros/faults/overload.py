@@ -37,6 +37,7 @@ from het_ros.tools.tracker_process import TrackerProcess, find_tracker, free_dom
 from het_ros.tools.transport import use_profile
 
 TIMES = 3.0
+LOOKS = 5
 FASTEST = 600.0  # frames/s to find out what the tracker can
 PATIENCE = 60.0  # s, for camera and tracker to find each other
 TARGET = (60, 120)  # px
@@ -80,21 +81,28 @@ def overload(size: tuple[int, int], seconds: float, parameters: tuple[str, ...])
     Returns:
         ``capacity`` frames/s, ``times`` so many of it were sent, ``sent``, ``answered``,
         ``counts`` as on /diagnostics, ``latency_frames``: percentiles of the time from publishing
-        a frame to its box over the time of processing one, ``memory_growth``.
+        a frame to its box over the time of processing one, ``memory_growth`` from the middle
+        third of the run to the last.
 
     Raises:
         TimeoutError, TrackerProcessError: the tracker is not heard, or ended.
     """
     footage = Footage(*size, 6)
-    fastest = _capacity(footage, parameters)
+    with _running(footage, FASTEST, parameters) as (camera, spin, pid):
+        _run(camera, spin, pid, footage, seconds / 3)
+        fastest = sum(stamp in camera.own for stamp in camera.sent) / _lasted(camera)
     with _running(footage, TIMES * fastest, parameters) as (camera, spin, pid):
-        before = _run(camera, spin, pid, footage, seconds)
-        after = look(pid)
+        held = _run(camera, spin, pid, footage, seconds)
         counted = _until_counted(camera, spin)
         times = np.array([camera.boxes[s] for s in camera.sent if s in camera.boxes])
+        third = max(len(held) // 3, 1)
+        middle_mb, end_mb = (
+            float(np.median([sample.own_mb for sample in part]))
+            for part in (held[third:-third] or held, held[-third:])
+        )
         return {
             "capacity": fastest,
-            "times": len(camera.sent) / (after.time - before.time) / fastest,
+            "times": len(camera.sent) / _lasted(camera) / fastest,
             "sent": camera.all_sent,
             "answered": len(camera.own),
             "counts": camera.counts,
@@ -103,27 +111,29 @@ def overload(size: tuple[int, int], seconds: float, parameters: tuple[str, ...])
             "latency_frames": {
                 f"p{part}": float(np.percentile(times, part) * fastest) for part in (50, 95, 99)
             },
-            "memory_mb": [before.own_mb, after.own_mb],
-            "memory_growth": after.own_mb / before.own_mb - 1,
-            "load": after.load,
+            "memory_mb": [middle_mb, end_mb],
+            "memory_growth": end_mb / middle_mb - 1,
+            "load": held[-1].load,
         }
 
 
-def _capacity(footage: Footage, parameters: tuple[str, ...]) -> float:
-    """Frames a second that are answered when they come as fast as the camera can."""
-    seconds = 0.5
-    with _running(footage, FASTEST, parameters) as (camera, spin, pid):
-        before = _run(camera, spin, pid, footage, seconds)
-        lasted = look(pid).time - before.time
-        return sum(stamp in camera.own for stamp in camera.sent) / lasted
+def _lasted(camera: Camera) -> float:
+    """From the first counted frame to the last, s."""
+    return max(camera.sent.values()) - min(camera.sent.values())
 
 
-def _run(camera: Camera, spin: Spin, pid: int, footage: Footage, seconds: float) -> Sample:
-    """Let the camera run; what the tracker's process held when the counting began."""
-    begun: list[Sample] = []
-    camera.run(seconds, middle(footage, TARGET), spin, lambda: begun.append(look(pid)))
+def _run(camera: Camera, spin: Spin, pid: int, footage: Footage, seconds: float) -> list[Sample]:
+    """Let the camera run; what the tracker's process held meanwhile, LOOKS times a second."""
+    held: list[Sample] = []
+
+    def watching(left: float) -> None:
+        spin(left)
+        if held and time.monotonic() - held[-1].time > 1 / LOOKS:
+            held.append(look(pid))
+
+    camera.run(seconds, middle(footage, TARGET), watching, lambda: held.append(look(pid)))
     camera.finish(spin)
-    return begun[0]
+    return held
 
 
 def _until_counted(camera: CountingCamera, spin: Spin) -> bool:

@@ -1,3 +1,5 @@
+# Copyright 2026 het_ros maintainers
+# SPDX-License-Identifier: Apache-2.0
 """docs/RELIABILITY.md names tests that there are, and every fault's test is named."""
 
 import re
