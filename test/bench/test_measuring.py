@@ -19,6 +19,7 @@ from het_ros.bench.stages import STAGES, stage_times, timed_stages
 from het_ros.tracking import target
 from het_ros.tracking.box import Box
 from het_ros.tracking.config import TrackerConfig
+from het_ros.tracking.motion import AdaptiveKalman
 from het_ros.tracking.tracker import HierarchicalEnsembleTracker
 
 SMALL = replace(TrackerConfig(), features=20, sub_patches=3)
@@ -96,10 +97,10 @@ def test_every_stage_that_a_configuration_has_takes_time(config, idle, footage):
 
 
 def test_timed_stages_leaves_everything_as_it_was():
-    before = target.cut_window, target.AdaptiveKalman.predict
+    before = target.cut_window, AdaptiveKalman.predict
     with pytest.raises(KeyError), timed_stages():
         raise KeyError
-    assert (target.cut_window, target.AdaptiveKalman.predict) == before
+    assert (target.cut_window, AdaptiveKalman.predict) == before
 
 
 def test_scaling_times_every_case(footage):

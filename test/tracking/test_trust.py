@@ -85,8 +85,8 @@ def test_hidden_frames_are_counted_until_the_target_is_back():
         (Evidence(0.45, 0.8, 0.1), False),  # too little is left of it
         (Evidence(1.0, 0.4, 0.1), False),  # its colours are not back
         (Evidence(0.6, 0.8, 0.1), True),  # where it was, and nothing rivals it
-        (Evidence(0.8, 0.8, 0.5, moved=1.0, away=1.0), False),  # anybody over there
-        (Evidence(0.8, 0.8, 0.5, moved=0.5, away=1.0), True),
+        (Evidence(0.8, 0.8, 0.65, moved=1.0, away=1.0), False),  # anybody over there
+        (Evidence(0.8, 0.8, 0.65, moved=0.5, away=1.0), True),
         (Evidence(0.6, 0.8, 0.6, moved=0.6, away=0.6, spread=0.2), False),
         (Evidence(1.0, 0.8, 0.1, moved=5.0, away=5.0), True),  # far, but nobody else
     ],
