@@ -18,6 +18,7 @@ from het_ros.tracking.estimate import State
 _RUNNING_RATE = 0.05  # of the means of the evidence, a frame
 _LONGEST_DOUBT = 0.5  # s; who is doubted for longer is not followed any more
 _RETURN_COLOUR = 0.6  # share of the colours' mean below which nobody comes back
+_TWIN_TEMPLATE = 0.75  # share of the score's mean that makes a rival a twin
 _TWIN_TIME = 1.2  # s after a twin was beside the target in which it may be either
 _FAR = 0.7  # target sides from the prediction; a target that comes back there ...
 _RETURN_FAR = 0.85  # ... must be recognised with this probability
@@ -26,7 +27,7 @@ _YOUNG = 10  # frames in which the model has seen too little to be ambiguous abo
 _NEVER_BELOW = 0.2  # relative template score that nothing can excuse
 _SURE = 100.0  # a logit beyond which nothing changes but that exp() overflows
 # Logistic regression of "IoU over 0.5" on the evidence, over the frames of many real tracks.
-_BIAS, _BY_TEMPLATE, _BY_COLOUR, _BY_RIVAL = -5.0, 6.9, 2.5, -2.5
+_BIAS, _BY_TEMPLATE, _BY_MEAN, _BY_COLOUR, _BY_RIVAL = -8.1, 4.0, 9.2, 1.0, -2.7
 # The same of "this is the hidden target", on its evidence as in :func:`recognised`.
 _KNOWN = (1.0, 4.0, 2.37, -3.72, -2.0, -1.0, -4.92)
 
@@ -101,8 +102,9 @@ class Trust:
         self._doubted_for = self._doubted_for + dt if verdict is Verdict.DOUBTED else 0.0
         if self._doubted_for > _LONGEST_DOUBT:
             verdict = Verdict.HIDDEN
-        self.score = probability(evidence.template, colour, rival)
-        self._since_twin = 0.0 if rival > self._limits.twin else self._since_twin + dt
+        self.score = probability(evidence.template, self._template, colour, rival)
+        twin = rival > self._limits.twin and rival * template > _TWIN_TEMPLATE
+        self._since_twin = 0.0 if twin else self._since_twin + dt
         if self._since_twin < _TWIN_TIME:
             self.score = min(self.score, 0.5)
         if verdict is Verdict.HIDDEN:
@@ -143,17 +145,19 @@ class Trust:
         return Verdict.DOUBTED if old and (ambiguous or covered or twin) else Verdict.SEEN
 
 
-def probability(template: float, colour: float, rival: float) -> float:
+def probability(template: float, mean: float, colour: float, rival: float) -> float:
     """Probability that a box is right (IoU over 0.5), 0..1.
 
     Args:
         template: mean score of the base ensembles there.
+        mean: what that was on average while all went well; low for a target hard to tell.
         colour: the colours' likelihood relative to its mean.
         rival: best score elsewhere over the one there.
     """
     logit = (
         _BIAS
         + _BY_TEMPLATE * template
+        + _BY_MEAN * mean
         + _BY_COLOUR * min(colour, 1.2)
         + _BY_RIVAL * min(max(rival, 0.0), 1.5)
     )

@@ -5,7 +5,7 @@ import math
 import pytest
 
 from het_ros import State, TrackerConfig
-from het_ros.tracking.trust import Evidence, Trust, Verdict, recognised
+from het_ros.tracking.trust import Evidence, Trust, Verdict, probability, recognised
 
 # Those named are what the tables below were written for, the others are the tracker's own.
 LIMITS = TrackerConfig(
@@ -159,7 +159,14 @@ def test_the_score_is_a_probability_that_rises_with_the_evidence():
         trust.judge(Evidence(template, 0.8, 0.1), 1 / 30)
         scores.append(trust.score)
     assert scores == sorted(scores)
-    assert 0 <= scores[0] < 0.6 < scores[-1] <= 1
+    assert 0 <= scores[0] < scores[-1] <= 1
+
+
+def test_a_target_that_was_hard_to_tell_all_along_is_less_sure():
+    sure = [probability(mean, mean, 1.0, 0.4) for mean in (0.3, 0.5, 0.7, 0.9)]
+    assert sure == sorted(sure)
+    assert sure[0] < 0.1
+    assert sure[-1] > 0.9
 
 
 @pytest.mark.parametrize(("state", "most"), [(State.COASTING, 0.5), (State.LOST, 0.0)])
