@@ -137,7 +137,7 @@ def _run(camera: Camera, spin: Spin, pid: int, footage: Footage, seconds: float)
 
 
 def _until_counted(camera: CountingCamera, spin: Spin) -> bool:
-    """Whether /diagnostics accounts for every frame from the first on that came.
+    """Whether /diagnostics accounts for every frame from the first answer on, and for no more.
 
     Frames that are lost at the very end leave no gap before a later one; one more frame makes
     one.
@@ -147,7 +147,8 @@ def _until_counted(camera: CountingCamera, spin: Spin) -> bool:
         end = time.monotonic() + 1.5
         while time.monotonic() < end:
             spin(0.05)
-            if sum(camera.counts.values()) == camera.sent_from(min(camera.own)):
+            first = camera.sent_from(min(camera.own))
+            if first <= sum(camera.counts.values()) <= camera.all_sent:
                 return True
     return False
 
