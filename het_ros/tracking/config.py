@@ -111,7 +111,7 @@ class TrackerConfig:
         0.02, "weight of the new frame in the colour histograms", low=0, high=1
     )
     flow_weight: float = parameter(
-        0.3,
+        0.25,
         "how much a place gains by optical flow in the dense votes; 0 is without",
         low=0,
         high=5,
