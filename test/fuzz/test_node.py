@@ -250,6 +250,8 @@ class Node(RuleBasedStateMachine):
         try:
             self.recover()
         finally:
+            # Levels are the process's, by name: the next node of this name has a log again.
+            self.node.get_logger().set_level(LoggingSeverity.INFO)
             self.node.destroy_node()
 
     def recover(self):
