@@ -148,7 +148,7 @@ class Target:
         if not self._trust and not self.box.touches_image(image.shape[1], image.shape[0]):
             return self.estimate(0.0, State.LOST)
         score = self._update_model(frame, found, verdict, step)
-        self._before = None if verdict is Verdict.HIDDEN else self._sight(frame)
+        self._before = self._sight(frame) if verdict is Verdict.SEEN else None
         state = self._trust.state if self._trust else State.TRACKING
         patches = () if verdict is Verdict.HIDDEN else self._patches(frame.window, found)
         return self.estimate(score, state, patches)
