@@ -43,6 +43,7 @@ Witness = Callable[[Box], bool]
 # A rival is a place of the target at least this part of its side away from the best one.
 _RIVAL_APART = 0.35
 _FLOW_SIGMA = 0.12  # target sides, how exact flow is
+_FLOW_AFTER = 1.0  # s in sight: just back, flow would go with who passes in front
 _FLOW_SHARE = 0.2  # of the points: fewer that agree say nothing
 _SMALLEST_SIDE = 3.0  # px: below this a target is not shrunk any more
 
@@ -114,6 +115,7 @@ class Target:
         self._trust = Trust(config) if config.trust else None
         self._motion = motion_model(config, box)
         self._before: Sight | None = None
+        self._in_sight_for = math.inf
         self._seen_at = np.array(box.centre)
         frame = self._look(image, self._seen_at)
         self._learn(frame, self._corner_in(frame.window), np.ones(config.sub_patches, bool), 1.0)
@@ -148,7 +150,8 @@ class Target:
         if not self._trust and not self.box.touches_image(image.shape[1], image.shape[0]):
             return self.estimate(0.0, State.LOST)
         score = self._update_model(frame, found, verdict, step)
-        self._before = self._sight(frame) if verdict is Verdict.SEEN else None
+        self._in_sight_for = 0.0 if verdict is Verdict.HIDDEN else self._in_sight_for + step
+        self._before = self._sight(frame) if self._in_sight_for > _FLOW_AFTER else None
         state = self._trust.state if self._trust else State.TRACKING
         patches = () if verdict is Verdict.HIDDEN else self._patches(frame.window, found)
         return self.estimate(score, state, patches)
