@@ -88,8 +88,8 @@ test: $(BUILT) ## Style, types, import contracts, package.xml, all tests
 	$(WORKSPACE); python -m pytest $(PYTEST)
 
 OLDEST_TESTS := test/tracking test/fuzz/test_conversions.py test/fuzz/test_core.py \
-	$(addprefix test/ros/test_,images.py messages.py optics.py depth.py stamps.py session.py \
-	parameters.py tracker_node.py)
+	$(addprefix test/ros/test_,images.py image_size.py messages.py optics.py depth.py stamps.py \
+	session.py parameters.py tracker_node.py)
 
 test-oldest: $(OLDEST)/.ready ## Core, conversions and node with NumPy 1.26 and OpenCV 4.6
 	$(CLEAN); source $(OLDEST)/bin/activate; export AMENT_PREFIX_PATH="$$VIRTUAL_ENV"; \

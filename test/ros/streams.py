@@ -4,6 +4,7 @@
 
 from __future__ import annotations
 
+import cv2
 import numpy as np
 from geometry_msgs.msg import Point32, PolygonStamped
 from rclpy.node import Node
@@ -33,6 +34,12 @@ def image_message(pixels: np.ndarray, header: Header) -> Image:
         encoding="mono8" if pixels.ndim == 2 else "bgr8",
         step=pixels.strides[0],
         data=np.ascontiguousarray(pixels).tobytes(),
+    )
+
+
+def compressed(pixels, suffix, name=None) -> CompressedImage:
+    return CompressedImage(
+        format=name or suffix, data=cv2.imencode(f".{suffix}", pixels)[1].tobytes()
     )
 
 
