@@ -11,7 +11,6 @@ import subprocess
 import sys
 from collections.abc import Sequence
 from pathlib import Path
-from types import TracebackType
 
 INSTALLED = Path("install/het_ros/lib/het_ros/tracker")  # where colcon build puts it
 PATIENCE = 5.0  # s between SIGTERM and SIGKILL
@@ -69,12 +68,7 @@ class TrackerProcess:
     def __enter__(self) -> TrackerProcess:
         return self
 
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
+    def __exit__(self, *_: object) -> None:
         self._process.send_signal(signal.SIGTERM)
         try:
             self._process.wait(PATIENCE)
