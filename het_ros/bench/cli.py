@@ -24,6 +24,7 @@ from het_ros.bench.scaling import TARGET_IN_IMAGES, cases_of, middle, scaling
 from het_ros.bench.stages import stage_times
 from het_ros.evaluation.jobs import one_thread
 from het_ros.evaluation.summary import machine
+from het_ros.tools.arguments import command
 from het_ros.tools.tracker_process import TrackerProcessError
 from het_ros.tracking.config import TrackerConfig
 
@@ -56,11 +57,10 @@ def main(arguments: list[str] | None = None) -> int:
 
 def parser() -> argparse.ArgumentParser:
     """The command line."""
-    p = argparse.ArgumentParser(
-        prog="bench",
-        description="Measure what a frame costs: core and peers, scaling, stages, node, start.",
-        epilog=EXAMPLE,
-        formatter_class=argparse.RawDescriptionHelpFormatter,
+    p = command(
+        "bench",
+        "Measure what a frame costs: core and peers, scaling, stages, node, start.",
+        EXAMPLE,
     )
     p.add_argument("--out", type=Path, required=True, help="folder for bench.json and report.md")
     p.add_argument(

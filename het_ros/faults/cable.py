@@ -32,6 +32,7 @@ from het_ros.bench.scaling import middle
 from het_ros.ros.debug_image import debug_message
 from het_ros.ros.messages import polygon_from_box, stamp_ns
 from het_ros.ros.status import status_values
+from het_ros.tools.arguments import command
 from het_ros.tools.tracker_process import find_tracker
 from het_ros.tools.two_hosts import DOMAIN, namespaces
 
@@ -135,12 +136,7 @@ def _cable(way: str) -> None:
 
 def main(argv: list[str] | None = None) -> int:
     """Command line."""
-    p = argparse.ArgumentParser(
-        prog="cable",
-        description=__doc__,
-        epilog=EXAMPLE,
-        formatter_class=argparse.RawDescriptionHelpFormatter,
-    )
+    p = command("cable", __doc__, EXAMPLE)
     p.add_argument("--seconds", type=float, default=5.0, help="the cable is out (5)")
     p.add_argument("--inside", action="store_true", help="the namespaces are there already")
     p.add_argument("--camera", action="store_true", help=argparse.SUPPRESS)

@@ -33,6 +33,7 @@ from het_ros.faults.disturb import (
     swap,
 )
 from het_ros.ros.messages import polygon_from_box
+from het_ros.tools.arguments import command
 from het_ros.tools.bag_reader import BagError, BagReader
 from het_ros.tools.interrupt import StopRequest
 from het_ros.tools.message_types import message_class
@@ -116,12 +117,7 @@ def disturbed(options: argparse.Namespace, frames: int) -> list[Delivery]:
 
 
 def _parse(argv: Sequence[str]) -> argparse.Namespace:
-    p = argparse.ArgumentParser(
-        prog="camera",
-        description=__doc__,
-        epilog=EXAMPLE,
-        formatter_class=argparse.RawDescriptionHelpFormatter,
-    )
+    p = command("camera", __doc__, EXAMPLE)
     p.add_argument("bag", type=Path, help="folder of a rosbag2 with images")
     p.add_argument("--rate", type=float, default=30.0, help="frames/s (30)")
     p.add_argument("--rounds", type=int, default=1, help="times the bag is played (1)")

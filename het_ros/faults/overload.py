@@ -10,7 +10,6 @@ dropped on /diagnostics.
 
 from __future__ import annotations
 
-import argparse
 import json
 import os
 import sys
@@ -33,6 +32,7 @@ from het_ros.bench.footage import Footage
 from het_ros.bench.scaling import middle
 from het_ros.faults.process import Sample, look
 from het_ros.ros.status import status_values
+from het_ros.tools.arguments import add_parameters, command
 from het_ros.tools.tracker_process import TrackerProcess, find_tracker, free_domain
 from het_ros.tools.transport import use_profile
 
@@ -185,18 +185,10 @@ def _running(
 
 def main(argv: list[str] | None = None) -> int:
     """Command line."""
-    p = argparse.ArgumentParser(
-        prog="overload",
-        description=__doc__,
-        epilog=EXAMPLE,
-        formatter_class=argparse.RawDescriptionHelpFormatter,
-    )
+    p = command("overload", __doc__, EXAMPLE)
     p.add_argument("--size", default="320x240", help="of the images (320x240)")
     p.add_argument("--seconds", type=float, default=10.0, help=f"after {WARM_UP:g} s more (10)")
-    p.add_argument(
-        "-p", dest="parameters", action="append", default=[], metavar="NAME:=VALUE",
-        help="a parameter of the tracker",
-    )  # fmt: skip
+    add_parameters(p)
     options = p.parse_args(argv)
     width, height = (int(side) for side in options.size.split("x"))
     result = overload((width, height), options.seconds, tuple(options.parameters))

@@ -34,6 +34,7 @@ from het_ros.faults.soak_camera import SoakCamera, Stretch
 from het_ros.faults.soak_plot import plot
 from het_ros.faults.verdict import judge
 from het_ros.scene.config import SceneConfig
+from het_ros.tools.arguments import add_parameters, command
 from het_ros.tools.interrupt import StopRequest
 from het_ros.tools.tracker_process import (
     TrackerProcess,
@@ -173,22 +174,14 @@ def row_of(
 
 def main(argv: list[str] | None = None) -> int:
     """0: all that is asked for is met; 1: it is not; 2: it could not be run; 130: stopped."""
-    p = argparse.ArgumentParser(
-        prog="soak",
-        description=__doc__,
-        epilog=EXAMPLE,
-        formatter_class=argparse.RawDescriptionHelpFormatter,
-    )
+    p = command("soak", __doc__, EXAMPLE)
     p.add_argument("--minutes", type=float, default=60.0, help="how long (60)")
     p.add_argument("--out", type=Path, default=Path("out/soak"), help="results folder")
     p.add_argument("--rate", type=float, default=30.0, help="frames/s (30)")
     p.add_argument("--size", default="640x480", help="of the images (640x480)")
     p.add_argument("--loop", type=float, default=0.0, help="s of the loop (0: the whole story)")
     p.add_argument("--seed", type=int, default=0, help="of street and boxes (0)")
-    p.add_argument(
-        "-p", dest="parameters", action="append", default=[], metavar="NAME:=VALUE",
-        help="a parameter of the tracker",
-    )  # fmt: skip
+    add_parameters(p)
     options = p.parse_args(argv)
     try:
         return _run(options)

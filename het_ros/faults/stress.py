@@ -9,7 +9,6 @@ tracker is busy is not looked at. Prints a Markdown table, with every failure's 
 
 from __future__ import annotations
 
-import argparse
 import json
 import os
 import subprocess
@@ -30,6 +29,7 @@ from het_ros.evaluation.runs import Plan, Run, carry_out_plan
 from het_ros.evaluation.sequences import Sequence
 from het_ros.evaluation.summary import score_runs
 from het_ros.evaluation.trackers import tracker_spec
+from het_ros.tools.arguments import command
 
 BURN = "x = 1.0\nwhile True: x = x * 1.0000001 % 7.0"
 
@@ -108,12 +108,7 @@ def table(rows: list[dict[str, Any]]) -> str:
 
 def main(argv: list[str] | None = None) -> int:
     """Command line."""
-    p = argparse.ArgumentParser(
-        prog="stress",
-        description=__doc__,
-        epilog=EXAMPLE,
-        formatter_class=argparse.RawDescriptionHelpFormatter,
-    )
+    p = command("stress", __doc__, EXAMPLE)
     p.add_argument("--data", type=Path, required=True, help="folder of sequences (OTB, VOT)")
     p.add_argument("--sequences", default="", help="comma-separated (default: all)")
     p.add_argument("--cameras", default="30,60", help="frames/s (30,60)")

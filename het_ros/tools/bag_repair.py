@@ -8,11 +8,12 @@ and an end without an index is put there: readers then find the messages by scan
 
 from __future__ import annotations
 
-import argparse
 import struct
 import sys
 from collections.abc import Sequence
 from pathlib import Path
+
+from het_ros.tools.arguments import command
 
 MAGIC = b"\x89MCAP0\r\n"
 DATA_END, FOOTER = 0x0F, 0x02
@@ -82,12 +83,7 @@ def is_whole(file: Path) -> bool:
 
 def main(argv: Sequence[str] | None = None) -> int:
     """Command line."""
-    parser = argparse.ArgumentParser(
-        prog="bag_repair",
-        description=__doc__,
-        epilog=EXAMPLE,
-        formatter_class=argparse.RawDescriptionHelpFormatter,
-    )
+    parser = command("bag_repair", __doc__, EXAMPLE)
     parser.add_argument("file", type=Path, help="an mcap file; it is changed in its place")
     options = parser.parse_args(argv)
     try:
