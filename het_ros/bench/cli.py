@@ -24,7 +24,7 @@ from het_ros.bench.scaling import TARGET_IN_IMAGES, cases_of, middle, scaling
 from het_ros.bench.stages import stage_times
 from het_ros.evaluation.jobs import one_thread
 from het_ros.evaluation.summary import machine
-from het_ros.tools.arguments import command
+from het_ros.tools.arguments import INTERRUPTED, command
 from het_ros.tools.tracker_process import TrackerProcessError
 from het_ros.tracking.config import TrackerConfig
 
@@ -45,7 +45,7 @@ def main(arguments: list[str] | None = None) -> int:
         print(f"bench: {error}", file=sys.stderr)
         return 2
     except KeyboardInterrupt:
-        return 130
+        return INTERRUPTED
     for row in report.promises.rows(bench):
         print("  ".join(cell.replace("*", "") for cell in row))
     print(f"report: {options.out / 'report.md'}")

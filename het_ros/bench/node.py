@@ -15,7 +15,7 @@ from tqdm import tqdm
 
 from het_ros.bench.figures import percentiles
 from het_ros.bench.process import THREADS
-from het_ros.tools.tracker_process import free_domain
+from het_ros.tools.tracker_process import own_graph
 
 SIZES = {"vga": (640, 480), "720p": (1280, 720), "1080p": (1920, 1080)}
 RATES = (30, 60)
@@ -83,11 +83,7 @@ def run_case(*arguments: str) -> dict[str, Any]:
     Raises:
         NodeCaseError: it failed.
     """
-    environment = os.environ | THREADS
-    environment |= {
-        "ROS_DOMAIN_ID": str(free_domain()),
-        "ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST",
-    }
+    environment = os.environ | THREADS | own_graph()
     command = [sys.executable, "-m", "het_ros.bench.node_case", *arguments]
     done = subprocess.run(command, env=environment, capture_output=True, text=True)
     if done.returncode:

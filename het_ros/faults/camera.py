@@ -33,7 +33,7 @@ from het_ros.faults.disturb import (
     swap,
 )
 from het_ros.ros.messages import polygon_from_box
-from het_ros.tools.arguments import command
+from het_ros.tools.arguments import INTERRUPTED, command, split_ros_arguments
 from het_ros.tools.bag_reader import BagError, BagReader
 from het_ros.tools.interrupt import StopRequest
 from het_ros.tools.message_types import message_class
@@ -137,15 +137,14 @@ def _parse(argv: Sequence[str]) -> argparse.Namespace:
 
 def main(argv: Sequence[str] | None = None) -> int:
     """Command line."""
-    arguments = list(sys.argv[1:] if argv is None else argv)
-    cut = arguments.index("--ros-args") if "--ros-args" in arguments else len(arguments)
-    options = _parse(arguments[:cut])
+    own, ros = split_ros_arguments(argv)
+    options = _parse(own)
     use_profile()
     try:
         with BagReader(options.bag) as bag, StopRequest() as stop:
             if not bag.image_topic:
                 raise BagError(f"{options.bag} has no images")
-            rclpy.init(args=arguments[cut:], signal_handler_options=SignalHandlerOptions.NO)
+            rclpy.init(args=ros, signal_handler_options=SignalHandlerOptions.NO)
             try:
                 return _run(FaultyCamera(bag, options.boxes), options, stop)
             finally:
@@ -165,7 +164,7 @@ def _run(camera: FaultyCamera, options: argparse.Namespace, stop: StopRequest) -
             time.sleep(0.02)
         sent = play(camera, stream, stop)
         print(f"{sent} of {len(stream)} frames sent")
-        return 130 if stop else 0
+        return INTERRUPTED if stop else 0
     finally:
         camera.destroy_node()
 

@@ -33,7 +33,8 @@ from het_ros.bench.scaling import middle
 from het_ros.faults.process import Sample, look
 from het_ros.ros.status import status_values
 from het_ros.tools.arguments import add_parameters, command
-from het_ros.tools.tracker_process import TrackerProcess, find_tracker, free_domain
+from het_ros.tools.tracker_arguments import parameter_arguments
+from het_ros.tools.tracker_process import TrackerProcess, find_tracker, own_graph
 from het_ros.tools.transport import use_profile
 
 TIMES = 3.0
@@ -158,14 +159,12 @@ def _running(
     footage: Footage, rate: float, parameters: tuple[str, ...]
 ) -> Iterator[tuple[CountingCamera, Spin, int]]:
     """A tracker and a camera that found each other, in a domain of their own."""
-    os.environ["ROS_DOMAIN_ID"] = str(free_domain())
-    os.environ["ROS_AUTOMATIC_DISCOVERY_RANGE"] = "LOCALHOST"
+    os.environ.update(own_graph())
     use_profile()
-    given = [word for parameter in parameters for word in ("-p", parameter)]
-    arguments = ["--ros-args", "-p", "diagnostics_period:=0.2", *given]
+    given = parameter_arguments(["diagnostics_period:=0.2", *parameters])
     with tempfile.TemporaryDirectory() as folder:
         log = Path(folder) / "tracker.log"
-        with TrackerProcess(find_tracker(), arguments, log) as tracker:
+        with TrackerProcess(find_tracker(), ["--ros-args", *given], log) as tracker:
             rclpy.init(args=[], signal_handler_options=SignalHandlerOptions.NO)
             camera, executor = CountingCamera(footage, rate), SingleThreadedExecutor()
             executor.add_node(camera)

@@ -34,13 +34,14 @@ from het_ros.faults.soak_camera import SoakCamera, Stretch
 from het_ros.faults.soak_plot import plot
 from het_ros.faults.verdict import judge
 from het_ros.scene.config import SceneConfig
-from het_ros.tools.arguments import add_parameters, command
+from het_ros.tools.arguments import INTERRUPTED, add_parameters, command
 from het_ros.tools.interrupt import StopRequest
+from het_ros.tools.tracker_arguments import parameter_arguments
 from het_ros.tools.tracker_process import (
     TrackerProcess,
     TrackerProcessError,
     find_tracker,
-    free_domain,
+    own_graph,
 )
 from het_ros.tools.transport import use_profile
 
@@ -82,8 +83,7 @@ def soak(
         TrackerProcessError: the tracker ended by itself.
         TimeoutError: it cannot be heard.
     """
-    os.environ["ROS_DOMAIN_ID"] = str(free_domain())
-    os.environ["ROS_AUTOMATIC_DISCOVERY_RANGE"] = "LOCALHOST"
+    os.environ.update(own_graph())
     with (
         TrackerProcess(find_tracker(), arguments, folder / "tracker.log") as tracker,
         _camera(shots, rate, seed) as (camera, spin),
@@ -197,7 +197,7 @@ def _run(options: argparse.Namespace) -> int:
     options.out.mkdir(parents=True, exist_ok=True)
     cv2.setNumThreads(1)
     config = SceneConfig(width=width, height=height, rate=options.rate, seed=options.seed)
-    given = [word for parameter in options.parameters for word in ("-p", parameter)]
+    given = parameter_arguments(options.parameters)
     with StopRequest() as stop:
         rows = soak(
             60 * options.minutes,
@@ -213,7 +213,7 @@ def _run(options: argparse.Namespace) -> int:
     (options.out / "soak.json").write_text(json.dumps(plain(result), indent=1))
     plot(rows, options.out / "soak.png")
     print("\n".join([*told(result), f"results   {options.out}"]))
-    return 130 if stop else int(not result["passed"])
+    return INTERRUPTED if stop else int(not result["passed"])
 
 
 def told(result: dict[str, Any]) -> list[str]:

@@ -1,10 +1,12 @@
 # Copyright 2026 het_ros maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""What the command lines of this package share: parser and arguments of a bag."""
+"""What command lines share: the parser, and arguments of a bag, of the tracker and of ROS."""
 
 from __future__ import annotations
 
 import argparse
+import sys
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -21,6 +23,13 @@ def command(name: str, description: str | None, examples: str) -> argparse.Argum
         epilog=examples,
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
+
+
+def split_ros_arguments(argv: Sequence[str] | None) -> tuple[list[str], list[str]]:
+    """A command's own arguments, and ROS's from ``--ros-args`` on; None is the process's."""
+    arguments = list(sys.argv[1:] if argv is None else argv)
+    cut = arguments.index("--ros-args") if "--ros-args" in arguments else len(arguments)
+    return arguments[:cut], arguments[cut:]
 
 
 def add_bag(parser: argparse.ArgumentParser, out: str) -> None:

@@ -14,7 +14,7 @@ from rclpy.executors import SingleThreadedExecutor
 from rclpy.signals import SignalHandlerOptions
 from tqdm import tqdm
 
-from het_ros.tools.arguments import INTERRUPTED, add_bag, command
+from het_ros.tools.arguments import INTERRUPTED, add_bag, command, split_ros_arguments
 from het_ros.tools.bag_reader import BagReader, header_stamp
 from het_ros.tools.bag_writer import BagWriter
 from het_ros.tools.interrupt import StopRequest
@@ -136,14 +136,13 @@ def _play_and_record(
 
 def main(argv: Sequence[str] | None = None) -> int:
     """Command line."""
-    arguments = list(sys.argv[1:] if argv is None else argv)
-    cut = arguments.index("--ros-args") if "--ros-args" in arguments else len(arguments)
+    own, ros = split_ros_arguments(argv)
     parser = command("play", __doc__, EXAMPLE)
     add_bag(parser, out="out/play")
     parser.add_argument("--rate", type=float, default=1.0, help="2 plays twice as fast")
     parser.add_argument("--tracker", default=DEFAULT_TRACKER, help="the tracker node's full name")
     parser.add_argument("--wait", type=float, default=WAIT, help="s to wait for the tracker")
-    options = parser.parse_args(arguments[:cut])
+    options = parser.parse_args(own)
     folder = ResultsFolder(options.out)
     try:
         with BagReader(options.bag, options.image_topic) as bag, StopRequest() as stop:
@@ -156,7 +155,7 @@ def main(argv: Sequence[str] | None = None) -> int:
                 rate=options.rate,
                 init=options.init,
                 wait=options.wait,
-                ros_arguments=arguments[cut:],
+                ros_arguments=ros,
             )
             summary = write_report(bag, stamps, folder, tracker=options.tracker)
     except (OSError, ValueError, NobodyListensError) as error:

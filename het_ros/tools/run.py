@@ -35,7 +35,7 @@ from het_ros.tools.tracker_process import (
     TrackerProcess,
     TrackerProcessError,
     find_tracker,
-    free_domain,
+    own_graph,
 )
 from het_ros.tracking.box import Box
 
@@ -77,8 +77,7 @@ def run(
     Raises:
         BagError, NobodyListensError, TrackerProcessError: what stood in the way.
     """
-    os.environ["ROS_DOMAIN_ID"] = str(free_domain())
-    os.environ["ROS_AUTOMATIC_DISCOVERY_RANGE"] = "LOCALHOST"
+    os.environ.update(own_graph())
     log = folder.path / "tracker.log"
     folder.clear()
     with StopRequest() as stop:

@@ -1,6 +1,6 @@
 # Copyright 2026 het_ros maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""How a tracker has to be started to take a bag's images."""
+"""How a tracker has to be started: to take a bag's images, with parameters."""
 
 from __future__ import annotations
 
@@ -20,9 +20,12 @@ def tracker_arguments(bag: BagReader, parameters: Sequence[str] = ()) -> list[st
     transport, default = "raw", IMAGE_TOPIC
     if bag.compressed:
         transport, default = "compressed", COMPRESSED_TOPIC
-    arguments = ["--ros-args", "-p", f"image_transport:={transport}"]
+    arguments = ["--ros-args", *parameter_arguments([f"image_transport:={transport}"])]
     if bag.image_topic not in ("", default):
         arguments += ["-r", f"{default}:={bag.image_topic}"]
-    for parameter in parameters:
-        arguments += ["-p", parameter]
-    return arguments
+    return arguments + parameter_arguments(parameters)
+
+
+def parameter_arguments(parameters: Sequence[str]) -> list[str]:
+    """ROS arguments, to come behind ``--ros-args``, of parameters as "name:=value"."""
+    return [word for parameter in parameters for word in ("-p", parameter)]

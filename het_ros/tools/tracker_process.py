@@ -105,6 +105,14 @@ def _workspace_of(executable: Path) -> dict[str, str]:
     return {name: os.pathsep.join(filter(None, parts)) for name, parts in paths.items()}
 
 
+def own_graph() -> dict[str, str]:
+    """Environment of processes on this host that hear each other and nobody else."""
+    return {
+        "ROS_DOMAIN_ID": str(free_domain()),
+        "ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST",
+    }
+
+
 def free_domain() -> int:
     """A ROS_DOMAIN_ID that no process on this host uses now."""
     first = os.getpid() % len(DOMAINS)
