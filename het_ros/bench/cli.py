@@ -16,11 +16,11 @@ from typing import Any
 from het_ros.bench import report
 from het_ros.bench.core import OURS, PAPER, core, sequences_for
 from het_ros.bench.figures import missing, plain
-from het_ros.bench.footage import Footage
+from het_ros.bench.footage import Footage, middle
 from het_ros.bench.imports import weigh_imports
 from het_ros.bench.node import NodeCaseError, node, run_case
 from het_ros.bench.plots import plots
-from het_ros.bench.scaling import TARGET_IN_IMAGES, cases_of, middle, scaling
+from het_ros.bench.scaling import TARGET_IN_IMAGES, cases_of, scaling
 from het_ros.bench.stages import stage_times
 from het_ros.evaluation.jobs import one_thread
 from het_ros.evaluation.summary import machine

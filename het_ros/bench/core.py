@@ -17,8 +17,8 @@ from numpy.typing import NDArray
 from het_ros.bench.allocations import peak_of_a_frame
 from het_ros.bench.figures import percentiles, speed_over
 from het_ros.bench.floor import floor, sizes_of
-from het_ros.bench.footage import Footage
-from het_ros.bench.scaling import TARGET_IN_IMAGES, middle
+from het_ros.bench.footage import Footage, middle
+from het_ros.bench.scaling import TARGET_IN_IMAGES
 from het_ros.evaluation.jobs import one_thread
 from het_ros.evaluation.opencv_peers import PEERS, available
 from het_ros.evaluation.readers import read_sequences

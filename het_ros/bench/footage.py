@@ -8,6 +8,8 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from het_ros.tracking.box import Box
+
 Image = NDArray[np.uint8]
 STEP = 2  # px a frame
 
@@ -48,6 +50,12 @@ class Footage:
     def __getitem__(self, index: int) -> Image:
         """Frame (H, W, 3) uint8 BGR of the endless stream, counted from 0."""
         return self._frames[self.at(index)]
+
+
+def middle(footage: Footage, target: tuple[int, int]) -> Box:
+    """A box of that size (w, h), px, in the middle of the frames."""
+    height, width = footage[0].shape[:2]
+    return Box.from_centre(width / 2, height / 2, *target)
 
 
 def _texture(width: int, height: int, seed: int) -> Image:

@@ -23,9 +23,8 @@ from rclpy.executors import SingleThreadedExecutor
 
 from het_ros.bench.camera import WARM_UP, Camera
 from het_ros.bench.figures import percentiles
-from het_ros.bench.footage import Footage
+from het_ros.bench.footage import Footage, middle
 from het_ros.bench.process import usage
-from het_ros.bench.scaling import middle
 from het_ros.ros.tracker_node import TrackerNode
 from het_ros.tools.tracker_process import TrackerProcess, find_tracker
 from het_ros.tools.transport import use_profile

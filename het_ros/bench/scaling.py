@@ -14,8 +14,7 @@ import numpy as np
 from tqdm import tqdm
 
 from het_ros.bench.figures import exponent, factor
-from het_ros.bench.footage import Footage
-from het_ros.tracking.box import Box
+from het_ros.bench.footage import Footage, middle
 from het_ros.tracking.config import TrackerConfig
 from het_ros.tracking.estimate import State
 from het_ros.tracking.tracker import HierarchicalEnsembleTracker
@@ -129,9 +128,3 @@ def _started(case: Case) -> HierarchicalEnsembleTracker:
     tracker = HierarchicalEnsembleTracker(case.config)
     tracker.init(case.footage[0], middle(case.footage, case.target))
     return tracker
-
-
-def middle(footage: Footage, target: tuple[int, int]) -> Box:
-    """A box of that size, px, in the middle of the frames."""
-    height, width = footage[0].shape[:2]
-    return Box.from_centre(width / 2, height / 2, *target)

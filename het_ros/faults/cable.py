@@ -27,8 +27,7 @@ from rclpy.qos import QoSProfile, ReliabilityPolicy
 from sensor_msgs.msg import Image
 from std_msgs.msg import Header
 
-from het_ros.bench.footage import Footage
-from het_ros.bench.scaling import middle
+from het_ros.bench.footage import Footage, middle
 from het_ros.ros.debug_image import debug_message
 from het_ros.ros.messages import polygon_from_box, stamp_ns
 from het_ros.ros.status import status_values

@@ -28,8 +28,7 @@ from rclpy.signals import SignalHandlerOptions
 
 from het_ros.bench.camera import WARM_UP, Camera
 from het_ros.bench.figures import percentiles, plain
-from het_ros.bench.footage import Footage
-from het_ros.bench.scaling import middle
+from het_ros.bench.footage import Footage, middle
 from het_ros.faults.process import Sample, look
 from het_ros.ros.status import status_values
 from het_ros.tools.arguments import add_parameters, command

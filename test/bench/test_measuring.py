@@ -11,10 +11,10 @@ import pytest
 from het_ros.bench.allocations import peak_of_a_frame
 from het_ros.bench.core import core, sequences_for
 from het_ros.bench.floor import floor, sizes_of
-from het_ros.bench.footage import STEP, Footage
+from het_ros.bench.footage import STEP, Footage, middle
 from het_ros.bench.imports import weigh_imports
 from het_ros.bench.process import usage
-from het_ros.bench.scaling import Case, middle, scaling
+from het_ros.bench.scaling import Case, scaling
 from het_ros.bench.stages import STAGES, stage_times, timed_stages
 from het_ros.tracking import target
 from het_ros.tracking.box import Box
