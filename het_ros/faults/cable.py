@@ -29,7 +29,7 @@ from std_msgs.msg import Header
 
 from het_ros.bench.footage import Footage, middle
 from het_ros.ros.debug_image import debug_message
-from het_ros.ros.messages import polygon_from_box, stamp_ns
+from het_ros.ros.messages import header_of, polygon_from_box, stamp_ns
 from het_ros.ros.status import status_values
 from het_ros.tools.arguments import command
 from het_ros.tools.tracker_process import find_tracker
@@ -64,8 +64,7 @@ class Camera(Node):
         """Send the next image when it is due and serve what came."""
         rclpy.spin_once(self, timeout_sec=max(min(self._due - time.monotonic(), 0.02), 0.0))
         if time.monotonic() >= self._due:
-            header = Header(frame_id="camera")
-            header.stamp.sec, header.stamp.nanosec = divmod(time.time_ns(), 10**9)
+            header = header_of(time.time_ns(), "camera")
             self._images.publish(debug_message(self._footage[self._number], header))
             self._number += 1
             self._due += 1 / RATE

@@ -19,7 +19,6 @@ from geometry_msgs.msg import PolygonStamped
 from rclpy.node import Node
 from rclpy.qos import QoSProfile, ReliabilityPolicy
 from rclpy.signals import SignalHandlerOptions
-from std_msgs.msg import Header
 
 from het_ros.faults.disturb import (
     SECOND,
@@ -32,7 +31,7 @@ from het_ros.faults.disturb import (
     steady,
     swap,
 )
-from het_ros.ros.messages import polygon_from_box
+from het_ros.ros.messages import header_of, polygon_from_box
 from het_ros.tools.arguments import INTERRUPTED, command, split_ros_arguments
 from het_ros.tools.bag_reader import BagError, BagReader
 from het_ros.tools.interrupt import StopRequest
@@ -83,8 +82,7 @@ class FaultyCamera(Node):
         stamp = seconds.to_bytes(4, "little", signed=True) + rest.to_bytes(4, "little")
         self._publisher.publish(cdr[:STAMP_AT] + stamp + cdr[STAMP_AT + 8 :])
         if self._boxes and delivery.frame % BOX_EVERY == 0 and index < len(self._truth):
-            header = Header()
-            header.stamp.sec, header.stamp.nanosec = seconds, rest
+            header = header_of(delivery.stamp)
             self._boxes.publish(polygon_from_box(self._truth[index], header))
 
 

@@ -14,11 +14,10 @@ from geometry_msgs.msg import PolygonStamped
 from rclpy.node import Node
 from rclpy.qos import QoSProfile, ReliabilityPolicy
 from sensor_msgs.msg import Image
-from std_msgs.msg import Header
 
 from het_ros.faults.loop import Shot
 from het_ros.ros.debug_image import debug_message
-from het_ros.ros.messages import box_from_polygon, polygon_from_box, stamp_ns
+from het_ros.ros.messages import box_from_polygon, header_of, polygon_from_box, stamp_ns
 from het_ros.ros.status import status_values
 from het_ros.tracking.box import Box
 
@@ -116,7 +115,7 @@ class SoakCamera(Node):
         image = shot.pixels()
         self.stretch.probe.append(time.perf_counter() - begun)
         stamp = self._stamp(self.number)
-        message = debug_message(image, self._header(stamp))
+        message = debug_message(image, header_of(stamp, "camera"))
         self._sent[stamp] = self.number, time.monotonic()
         self._images.publish(message)
         self.stretch.sent += 1
@@ -140,17 +139,12 @@ class SoakCamera(Node):
     def _start(self, number: int) -> None:
         shot = self._shots[number % len(self._shots)]
         if number >= 0 and shot.startable and shot.box is not None:
-            header = self._header(self._stamp(number))
+            header = header_of(self._stamp(number), "camera")
             self._boxes.publish(polygon_from_box(shot.box, header))
             self.stretch.boxes += 1
 
     def _stamp(self, number: int) -> int:
         return FIRST_STAMP + round(number * 1e9 / self.rate)
-
-    def _header(self, stamp: int) -> Header:
-        header = Header(frame_id="camera")
-        header.stamp.sec, header.stamp.nanosec = divmod(stamp, 10**9)
-        return header
 
     def _on_box(self, message: PolygonStamped) -> None:
         stamp = stamp_ns(message.header)

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import math
 
+from builtin_interfaces.msg import Time
 from geometry_msgs.msg import (
     Point32,
     PolygonStamped,
@@ -119,3 +120,9 @@ def _planar(block) -> list[float]:
 def stamp_ns(header: Header) -> int:
     """The header's stamp in ns."""
     return int(header.stamp.sec) * 1_000_000_000 + int(header.stamp.nanosec)
+
+
+def header_of(stamp: int, frame_id: str = "") -> Header:
+    """A header with that stamp, ns: :func:`stamp_ns` the other way round."""
+    seconds, nanoseconds = divmod(stamp, 1_000_000_000)
+    return Header(stamp=Time(sec=seconds, nanosec=nanoseconds), frame_id=frame_id)

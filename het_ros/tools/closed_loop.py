@@ -27,7 +27,7 @@ from tqdm import tqdm
 
 from het_ros.ros.debug_image import debug_message
 from het_ros.ros.follower_example import FollowerNode
-from het_ros.ros.messages import box_from_polygon, polygon_from_box, stamp_ns
+from het_ros.ros.messages import box_from_polygon, header_of, polygon_from_box, stamp_ns
 from het_ros.ros.status import status_values
 from het_ros.ros.tracker_node import TrackerNode
 from het_ros.scene import CameraState, Frame, Scene, SceneConfig
@@ -111,7 +111,7 @@ class Loop:
     def _step(self, index: int) -> Moment:
         self._time = index / self.scene.config.rate
         frame = self.scene.render(self._time, self.robot, index)
-        header = self._header()
+        header = header_of(START + round(self._time * 1e9), "camera")
         self.tracker.space.on_camera_info(self._camera_info(header))
         self.tracker.space.on_depth(self._depth(frame, header))
         self._outputs.clear()
@@ -144,12 +144,6 @@ class Loop:
         linear = self._outputs["velocity"].twist.twist.linear
         box = box_from_polygon(self._outputs["box"])
         return replace(row, box=box, velocity=(linear.x, linear.y))
-
-    def _header(self) -> Header:
-        header = Header(frame_id="camera")
-        stamp = START + round(self._time * 1e9)
-        header.stamp.sec, header.stamp.nanosec = divmod(stamp, 1_000_000_000)
-        return header
 
     def _camera_info(self, header: Header) -> CameraInfo:
         lens = self.scene.lens

@@ -30,7 +30,7 @@ from sensor_msgs.msg import Image
 from std_msgs.msg import Header
 
 from het_ros.ros.debug_image import debug_message
-from het_ros.ros.messages import polygon_from_box, stamp_ns
+from het_ros.ros.messages import header_of, polygon_from_box, stamp_ns
 from het_ros.ros.status import status_values
 from het_ros.tools.tracker_process import find_tracker
 from het_ros.tracking.box import Box
@@ -92,8 +92,7 @@ class Camera(Node):
         texture = cv2.resize(blocks, (width, height))
         start = time.monotonic()
         for i in range(frames):
-            header = Header(frame_id="camera")
-            header.stamp.sec, header.stamp.nanosec = divmod(round((1 + i / RATE) * 1e9), 10**9)
+            header = header_of(round((1 + i / RATE) * 1e9), "camera")
             image = debug_message(np.roll(texture, 2 * i, axis=1), header)
             self._sent[stamp_ns(header)] = time.monotonic()
             self._images.publish(image)

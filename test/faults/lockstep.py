@@ -18,7 +18,7 @@ from std_srvs.srv import Trigger
 
 from het_ros import Box
 from het_ros.faults.disturb import SECOND, Delivery, steady
-from het_ros.ros.messages import box_from_polygon, stamp_ns
+from het_ros.ros.messages import box_from_polygon, header_of, stamp_ns
 from het_ros.ros.status import status_values
 from het_ros.tools.footage import Footage, open_footage
 
@@ -33,9 +33,7 @@ TRACKER = (
 
 
 def header(stamp: int) -> Header:
-    made = Header(frame_id="camera")
-    made.stamp.sec, made.stamp.nanosec = divmod(stamp, SECOND)
-    return made
+    return header_of(stamp, "camera")
 
 
 COUNTED = ("processed", "duplicate", "late", "unreadable", "skipped")

@@ -12,6 +12,7 @@ from rclpy.qos import QoSProfile, ReliabilityPolicy
 from sensor_msgs.msg import CompressedImage, Image
 from std_msgs.msg import Header
 
+from het_ros.ros.messages import header_of
 from het_ros.ros.status import status_values
 from het_ros.ros.tracker_node import OUTPUTS, TrackerNode
 
@@ -19,10 +20,7 @@ FRAME_TIME = 1 / 30  # s
 
 
 def header_at(seconds: float, frame_id: str = "camera") -> Header:
-    header = Header(frame_id=frame_id)
-    nanoseconds = round(seconds * 1e9)
-    header.stamp.sec, header.stamp.nanosec = divmod(nanoseconds, 1_000_000_000)
-    return header
+    return header_of(round(seconds * 1e9), frame_id)
 
 
 def image_message(pixels: np.ndarray, header: Header) -> Image:

@@ -12,6 +12,7 @@ from het_ros.ros.messages import (
     BoxError,
     box_from_polygon,
     box_from_roi,
+    header_of,
     polygon_from_box,
     pose_from_estimate,
     roi_from_box,
@@ -118,4 +119,6 @@ def test_covariances_stand_where_ros_wants_them():
 
 
 def test_stamp_in_nanoseconds():
+    assert (HEADER.stamp.sec, HEADER.stamp.nanosec) == (12, 250_000_000)
     assert stamp_ns(HEADER) == 12_250_000_000
+    assert stamp_ns(header_of(-1)) == -1
