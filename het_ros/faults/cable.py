@@ -23,10 +23,10 @@ import rclpy
 from diagnostic_msgs.msg import DiagnosticArray
 from geometry_msgs.msg import PolygonStamped
 from rclpy.node import Node
-from rclpy.qos import QoSProfile, ReliabilityPolicy
 from sensor_msgs.msg import Image
 from std_msgs.msg import Header
 
+from het_ros.bench.camera import QOS
 from het_ros.bench.footage import Footage, middle
 from het_ros.ros.debug_image import debug_message
 from het_ros.ros.messages import header_of, polygon_from_box, stamp_ns
@@ -52,8 +52,7 @@ class Camera(Node):
     def __init__(self) -> None:
         super().__init__("camera")
         self._footage = Footage(*SIZE, 6)
-        best_effort = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
-        self._images = self.create_publisher(Image, "image", best_effort)
+        self._images = self.create_publisher(Image, "image", QOS)
         self._boxes = self.create_publisher(PolygonStamped, "tracker/init_box", 10)
         self.create_subscription(DiagnosticArray, "tracker/status", self._on_status, 100)
         self._number = 0

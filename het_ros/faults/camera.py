@@ -17,9 +17,9 @@ import numpy as np
 import rclpy
 from geometry_msgs.msg import PolygonStamped
 from rclpy.node import Node
-from rclpy.qos import QoSProfile, ReliabilityPolicy
 from rclpy.signals import SignalHandlerOptions
 
+from het_ros.bench.camera import QOS
 from het_ros.faults.disturb import (
     SECOND,
     Delivery,
@@ -39,7 +39,6 @@ from het_ros.tools.message_types import message_class
 from het_ros.tools.transport import use_profile
 
 STAMP_AT = 4  # byte of a CDR message that begins with a header
-QOS = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
 BOX_EVERY = 30  # frames
 WAIT = 10.0  # s for somebody to listen
 

@@ -30,6 +30,7 @@ from het_ros.bench.camera import WARM_UP, Camera
 from het_ros.bench.figures import percentiles, plain
 from het_ros.bench.footage import Footage, middle
 from het_ros.faults.process import Sample, look
+from het_ros.ros.diagnostics import COUNTED
 from het_ros.ros.status import status_values
 from het_ros.tools.arguments import add_parameters, command
 from het_ros.tools.tracker_arguments import parameter_arguments
@@ -41,7 +42,6 @@ LOOKS = 5
 FASTEST = 600.0  # frames/s to find out what the tracker can
 PATIENCE = 60.0  # s, for camera and tracker to find each other
 TARGET = (60, 120)  # px
-COUNTED = ("processed", "duplicate", "late", "unreadable", "skipped", "dropped")
 Spin = Callable[[float], None]
 
 EXAMPLE = """example:

@@ -12,20 +12,19 @@ import numpy as np
 from diagnostic_msgs.msg import DiagnosticArray
 from geometry_msgs.msg import PolygonStamped
 from rclpy.node import Node
-from rclpy.qos import QoSProfile, ReliabilityPolicy
 from sensor_msgs.msg import Image
 
+from het_ros.bench.camera import QOS
 from het_ros.faults.loop import Shot
 from het_ros.ros.debug_image import debug_message
+from het_ros.ros.diagnostics import COUNTED
 from het_ros.ros.messages import box_from_polygon, header_of, polygon_from_box, stamp_ns
 from het_ros.ros.status import status_values
 from het_ros.tracking.box import Box
 
-QOS = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)  # what camera drivers offer
 FIRST_STAMP = 1000 * 10**9  # ns
 KEPT = 200  # frames whose answers are waited for
 SEEN = 0.5  # visible part from which on the target counts as visible
-TELLING = ("processed", "duplicate", "late", "unreadable", "skipped", "dropped")
 
 
 @dataclass
@@ -170,7 +169,7 @@ class SoakCamera(Node):
 
     def _on_diagnostics(self, message: DiagnosticArray) -> None:
         values = status_values(message)
-        self.counts = {name: int(values[name]) for name in TELLING if name in values}
+        self.counts = {name: int(values[name]) for name in COUNTED if name in values}
 
 
 def _holds(box: Box, point: tuple[float, float]) -> bool:

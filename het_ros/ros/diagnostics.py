@@ -12,6 +12,8 @@ from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
 from std_msgs.msg import Header
 
 LATENCIES = 300  # the newest so many make the percentiles
+# What became of the images.
+COUNTED = ("processed", "duplicate", "late", "unreadable", "skipped", "dropped")
 
 
 class Health:
@@ -49,7 +51,7 @@ class Health:
         elif state == "LOST":
             level, text = DiagnosticStatus.WARN, f"the target is LOST, {rate:.1f} frames/s"
         values = {"state": state, "rate_hz": f"{rate:.2f}"}
-        for key in ("processed", "duplicate", "late", "unreadable", "skipped", "dropped"):
+        for key in COUNTED:
             values[key] = str(counts[key])
         for percent in (50, 95, 99):
             part = np.percentile(self._latencies, percent) if self._latencies else 0.0
