@@ -11,7 +11,6 @@ from __future__ import annotations
 import argparse
 import json
 import os
-import signal
 import subprocess
 import sys
 import time
@@ -32,14 +31,19 @@ from het_ros.ros.debug_image import debug_message
 from het_ros.ros.messages import header_of, polygon_from_box, stamp_ns
 from het_ros.ros.status import status_values
 from het_ros.tools.arguments import command
-from het_ros.tools.tracker_process import find_tracker
-from het_ros.tools.two_hosts import DOMAIN, namespaces
+from het_ros.tools.two_hosts import (
+    namespaces,
+    printed_by_camera,
+    shared_graph,
+    tracker_on_its_host,
+)
 
 SIZE = (160, 120)  # px: an image that fits into one UDP datagram
 RATE = 30.0  # frames/s
 TARGET = (30, 40)  # px
 ENOUGH = 20  # statuses that show that it works
 PATIENCE = 60.0  # s
+MODULE = "het_ros.faults.cable"
 
 EXAMPLE = """example:
   sudo -E python -m het_ros.faults.cable --seconds 5
@@ -153,25 +157,10 @@ def main(argv: list[str] | None = None) -> int:
 
 def _both(seconds: float) -> dict[str, Any]:
     """Tracker and camera, each on its host."""
-    environment = dict(os.environ, ROS_DOMAIN_ID=DOMAIN, ROS_AUTOMATIC_DISCOVERY_RANGE="SUBNET")
-    environment.pop("FASTRTPS_DEFAULT_PROFILES_FILE", None)
-    at = {host: ["ip", "netns", "exec", host] for host in ("het_tracker", "het_camera")}
-    tracker = subprocess.Popen(
-        [*at["het_tracker"], str(find_tracker()), "--ros-args", "--log-level", "error"],
-        env=environment,
-    )
-    try:
-        words = ["-m", "het_ros.faults.cable", "--camera", "--seconds", str(seconds)]
-        printed = subprocess.run(
-            [*at["het_camera"], sys.executable, *words],
-            env=environment,
-            check=True,
-            stdout=subprocess.PIPE,
-        ).stdout
-        return {**json.loads(printed), "tracker_alive": tracker.poll() is None}
-    finally:
-        tracker.send_signal(signal.SIGTERM)
-        tracker.wait()
+    environment = shared_graph()
+    with tracker_on_its_host(environment) as tracker:
+        told = printed_by_camera(environment, MODULE, "--camera", "--seconds", str(seconds))
+        return {**told, "tracker_alive": tracker.poll() is None}
 
 
 if __name__ == "__main__":

@@ -18,6 +18,7 @@ import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
+from typing import Any
 
 import cv2
 import numpy as np
@@ -149,28 +150,52 @@ def namespaces() -> Iterator[None]:
             subprocess.run(["ip", "netns", "del", host], check=False, stderr=subprocess.DEVNULL)
 
 
-def measure(setting: Setting, width: int, height: int, frames: int) -> dict[str, float]:
-    """One row: the tracker on its host, the camera on the other."""
+def shared_graph() -> dict[str, str]:
+    """Environment of processes that find each other over the cable, with Fast DDS's defaults."""
     environment = dict(os.environ, ROS_DOMAIN_ID=DOMAIN, ROS_AUTOMATIC_DISCOVERY_RANGE="SUBNET")
     environment.pop("FASTRTPS_DEFAULT_PROFILES_FILE", None)
+    return environment
+
+
+@contextmanager
+def tracker_on_its_host(
+    environment: dict[str, str], *arguments: str
+) -> Iterator[subprocess.Popen[bytes]]:
+    """The installed tracker with these ROS arguments on its host; ended with the block."""
+    command = [*_on("het_tracker"), str(find_tracker()), "--ros-args", *arguments]
+    tracker = subprocess.Popen([*command, "--log-level", "error"], env=environment)
+    try:
+        yield tracker
+    finally:
+        tracker.send_signal(signal.SIGTERM)
+        tracker.wait()
+
+
+def printed_by_camera(environment: dict[str, str], module: str, *arguments: str) -> dict[str, Any]:
+    """Run a module on the camera's host; the JSON object that it prints.
+
+    Raises:
+        subprocess.CalledProcessError: it failed.
+    """
+    command = [*_on("het_camera"), sys.executable, "-m", module, *arguments]
+    done = subprocess.run(command, env=environment, check=True, stdout=subprocess.PIPE)
+    return dict(json.loads(done.stdout))
+
+
+def _on(host: str) -> list[str]:
+    return ["ip", "netns", "exec", host]
+
+
+def measure(setting: Setting, width: int, height: int, frames: int) -> dict[str, float]:
+    """One row: the tracker on its host, the camera on the other."""
+    environment = shared_graph()
     if setting.large_data:
         environment["FASTDDS_BUILTIN_TRANSPORTS"] = "LARGE_DATA"
     kind = "reliable" if setting.reliable else "best_effort"
     override = f"qos_overrides./image.subscription.reliability:={kind}"
-    at_tracker = ["ip", "netns", "exec", "het_tracker", str(find_tracker())]
-    at_camera = ["ip", "netns", "exec", "het_camera", sys.executable, "-m", MODULE]
-    tracker = subprocess.Popen(
-        [*at_tracker, "--ros-args", "-p", override, "--log-level", "error"], env=environment
-    )
-    try:
-        sizes = [f"--size={width}x{height}", f"--frames={frames}", f"--send={kind}"]
-        printed = subprocess.run(
-            [*at_camera, *sizes], env=environment, check=True, stdout=subprocess.PIPE
-        ).stdout
-    finally:
-        tracker.send_signal(signal.SIGTERM)
-        tracker.wait()
-    return dict(json.loads(printed))
+    with tracker_on_its_host(environment, "-p", override):
+        sizes = (f"--size={width}x{height}", f"--frames={frames}")
+        return printed_by_camera(environment, MODULE, *sizes, f"--send={kind}")
 
 
 def main(arguments: list[str] | None = None) -> int:
