@@ -89,8 +89,7 @@ def _tracker(
     figures["success_curve"] = _curve(by_sequence, "success")
     figures["precision_curve"] = _curve(by_sequence, "precision")
     figures["sequences"] = {
-        sequence: _sequence(name, sequence, group, timing)
-        for sequence, group in by_sequence.items()
+        sequence: _sequence(name, group, timing) for sequence, group in by_sequence.items()
     }
     figures["attributes"] = _attributes(figures["sequences"], sequences)
     truths = {sequence.name: sequence.truth for sequence in sequences.values()}
@@ -102,7 +101,7 @@ def _tracker(
     return figures
 
 
-def _sequence(name: str, sequence: str, group: list[Scored], timing: Timing) -> dict[str, Any]:
+def _sequence(name: str, group: list[Scored], timing: Timing) -> dict[str, Any]:
     figures: dict[str, Any] = {}
     for figure in FIGURES:
         figures[figure], figures[f"{figure}_std"] = mean_and_deviation(group, figure)

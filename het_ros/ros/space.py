@@ -61,7 +61,7 @@ class Space:
 
     def bearing(self, box: Box, size: tuple[int, int], header: Header) -> Vector3Stamped | None:
         """The ray through the box's centre, or None where no usable camera_info came."""
-        ray = self._ray(box, size, header)
+        ray = self._ray(box, size)
         return None if ray is None else bearing_message(ray, header)
 
     def pose(
@@ -76,7 +76,7 @@ class Space:
         try:
             metres = self._metres(depth_image)
             depth = self._target.measure(box, size, metres, stamp_ns(header), track)
-            ray = self._ray(box, size, header)
+            ray = self._ray(box, size)
             return None if ray is None else pose_at(ray, depth, header)
         except (DepthError, ImageError) as error:
             self._hints.once(f"depth {type(error).__name__}", f"no ~/target_pose: {error}")
@@ -93,7 +93,7 @@ class Space:
             return True
         return self._target.may_be_in(box, size, metres, stamp_ns(header), track)
 
-    def _ray(self, box: Box, size: tuple[int, int], header: Header) -> NDArray[float64] | None:
+    def _ray(self, box: Box, size: tuple[int, int]) -> NDArray[float64] | None:
         if self._info is None:
             return None
         try:

@@ -33,11 +33,6 @@ class Row:
     score: float | None = None
     state: State | None = None
 
-    @property
-    def seconds(self) -> float:
-        """Stamp in s."""
-        return self.stamp * 1e-9
-
 
 def write_csv(rows: Iterable[Row], path: Path | str) -> None:
     """Write rows as ``stamp,x,y,w,h,vx,vy,score,state``; what is unknown stays empty.
