@@ -5,12 +5,17 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from typing import TypeVar
 
+import rclpy
 from diagnostic_msgs.msg import DiagnosticArray
 from geometry_msgs.msg import PolygonStamped
+from rclpy.executors import SingleThreadedExecutor
 from rclpy.node import Node
 from rclpy.qos import QoSProfile, ReliabilityPolicy
+from rclpy.signals import SignalHandlerOptions
 from sensor_msgs.msg import Image
 from std_msgs.msg import Header
 
@@ -18,6 +23,7 @@ from het_ros.bench.footage import Footage
 from het_ros.ros.debug_image import debug_message
 from het_ros.ros.messages import polygon_from_box, stamp_ns
 from het_ros.ros.status import status_values
+from het_ros.tools.transport import use_profile
 from het_ros.tracking.box import Box
 
 QOS = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)  # what camera drivers offer
@@ -27,6 +33,24 @@ CALLBACKS = 6  # that an image brings about at most, in one process
 GRACE = 1.0  # s, for answers that are on their way at the end
 
 Spin = Callable[[float], None]
+Made = TypeVar("Made", bound=Node)
+
+
+@contextmanager
+def spun(make: Callable[[], Made]) -> Iterator[tuple[Made, Spin]]:
+    """The node that ``make`` makes, in a graph that ends with the block, and what spins it.
+
+    It sends with the shipped profile of Fast DDS, and leaves signals to the caller.
+    """
+    use_profile()
+    rclpy.init(args=[], signal_handler_options=SignalHandlerOptions.NO)
+    node, executor = make(), SingleThreadedExecutor()
+    executor.add_node(node)
+    try:
+        yield node, lambda seconds: executor.spin_once(timeout_sec=seconds)
+    finally:
+        node.destroy_node()
+        rclpy.try_shutdown()
 
 
 class Camera(Node):

@@ -15,18 +15,15 @@ import os
 import sys
 import tempfile
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
 import numpy as np
-import rclpy
 from diagnostic_msgs.msg import DiagnosticArray
-from rclpy.executors import SingleThreadedExecutor
-from rclpy.signals import SignalHandlerOptions
 
-from het_ros.bench.camera import WARM_UP, Camera
+from het_ros.bench.camera import WARM_UP, Camera, Spin, spun
 from het_ros.bench.figures import percentiles, plain
 from het_ros.bench.footage import Footage, middle
 from het_ros.faults.process import Sample, look
@@ -42,7 +39,6 @@ LOOKS = 5
 FASTEST = 600.0  # frames/s to find out what the tracker can
 PATIENCE = 60.0  # s, for camera and tracker to find each other
 TARGET = (60, 120)  # px
-Spin = Callable[[float], None]
 
 EXAMPLE = """example:
   python -m het_ros.faults.overload --size 640x480 --seconds 20
@@ -159,26 +155,23 @@ def _running(
 ) -> Iterator[tuple[CountingCamera, Spin, int]]:
     """A tracker and a camera that found each other, in a domain of their own."""
     os.environ.update(own_graph())
-    use_profile()
+    use_profile()  # the tracker takes it over
     given = parameter_arguments(["diagnostics_period:=0.2", *parameters])
-    with tempfile.TemporaryDirectory() as folder:
-        log = Path(folder) / "tracker.log"
-        with TrackerProcess(find_tracker(), ["--ros-args", *given], log) as tracker:
-            rclpy.init(args=[], signal_handler_options=SignalHandlerOptions.NO)
-            camera, executor = CountingCamera(footage, rate), SingleThreadedExecutor()
-            executor.add_node(camera)
-            try:
-                end = time.monotonic() + PATIENCE
-                while not camera.connected():
-                    tracker.check()
-                    executor.spin_once(timeout_sec=0.05)
-                    if time.monotonic() > end:
-                        raise TimeoutError(f"the tracker is not heard after {PATIENCE:g} s")
-                yield camera, lambda s: executor.spin_once(timeout_sec=s), tracker.pid
-                tracker.check()
-            finally:
-                camera.destroy_node()
-                rclpy.try_shutdown()
+    with (
+        tempfile.TemporaryDirectory() as folder,
+        TrackerProcess(
+            find_tracker(), ["--ros-args", *given], Path(folder) / "tracker.log"
+        ) as tracker,
+        spun(lambda: CountingCamera(footage, rate)) as (camera, spin),
+    ):
+        end = time.monotonic() + PATIENCE
+        while not camera.connected():
+            tracker.check()
+            spin(0.05)
+            if time.monotonic() > end:
+                raise TimeoutError(f"the tracker is not heard after {PATIENCE:g} s")
+        yield camera, spin, tracker.pid
+        tracker.check()
 
 
 def main(argv: list[str] | None = None) -> int:

@@ -14,19 +14,15 @@ import json
 import os
 import sys
 import time
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
 from dataclasses import asdict
 from pathlib import Path
 from typing import Any, TextIO
 
 import cv2
 import numpy as np
-import rclpy
-from rclpy.executors import SingleThreadedExecutor
-from rclpy.signals import SignalHandlerOptions
 from tqdm import tqdm
 
+from het_ros.bench.camera import Spin, spun
 from het_ros.bench.figures import percentiles, plain
 from het_ros.faults.loop import Shot, render
 from het_ros.faults.process import Sample, look
@@ -43,7 +39,6 @@ from het_ros.tools.tracker_process import (
     find_tracker,
     own_graph,
 )
-from het_ros.tools.transport import use_profile
 
 PATIENCE = 60.0  # s, for camera and tracker to find each other
 STRETCHES = 360  # rows of a run at most, each LEAST_STRETCH or longer
@@ -86,7 +81,7 @@ def soak(
     os.environ.update(own_graph())
     with (
         TrackerProcess(find_tracker(), arguments, folder / "tracker.log") as tracker,
-        _camera(shots, rate, seed) as (camera, spin),
+        spun(lambda: SoakCamera(shots, rate, np.random.default_rng(seed))) as (camera, spin),
     ):
         end = time.monotonic() + PATIENCE
         while not camera.connected() and not stop:
@@ -98,25 +93,9 @@ def soak(
             return _watched(camera, spin, tracker, seconds, stop, file)
 
 
-@contextmanager
-def _camera(
-    shots: list[Shot], rate: float, seed: int
-) -> Iterator[tuple[SoakCamera, Callable[[float], None]]]:
-    use_profile()
-    rclpy.init(args=[], signal_handler_options=SignalHandlerOptions.NO)
-    camera = SoakCamera(shots, rate, np.random.default_rng(seed))
-    executor = SingleThreadedExecutor()
-    executor.add_node(camera)
-    try:
-        yield camera, lambda seconds: executor.spin_once(timeout_sec=seconds)
-    finally:
-        camera.destroy_node()
-        rclpy.try_shutdown()
-
-
 def _watched(
     camera: SoakCamera,
-    spin: Callable[[float], None],
+    spin: Spin,
     tracker: TrackerProcess,
     seconds: float,
     stop: StopRequest,
