@@ -128,19 +128,33 @@ def local_graph(processes):
     made.close()
 
 
+@pytest.fixture(scope="session")
+def installed() -> None:
+    """For tests that start what is installed; they are skipped where nothing is."""
+    if not (EXECUTABLES / "tracker").exists():
+        pytest.skip("nothing installed: run `make build`, and source install/setup.bash")
+
+
+@pytest.fixture
+def own_environment():
+    """For tests of what chooses a ROS domain for its process: that is taken back."""
+    before = dict(os.environ)
+    yield
+    os.environ.clear()
+    os.environ.update(before)
+
+
 _domains = itertools.count(20 + os.getpid() % 150)
 
 
 @pytest.fixture
-def processes(monkeypatch, tmp_path):
+def processes(installed, monkeypatch, tmp_path):
     """Start installed executables: ``processes("tracker", "--ros-args", ...)`` gives the Popen.
 
     They and the test's own process share a ROS domain that nobody else uses. What still runs at
     the end is told to stop (SIGTERM), and killed if it does not. Output goes to a file,
     ``process.log``.
     """
-    if not (EXECUTABLES / "tracker").exists():
-        pytest.skip("nothing installed: run `make build`, and source install/setup.bash")
     monkeypatch.setenv("ROS_AUTOMATIC_DISCOVERY_RANGE", "LOCALHOST")
     monkeypatch.setenv("ROS_DOMAIN_ID", str(next(_domains)))
     monkeypatch.setenv("ROS_LOG_DIR", str(tmp_path / "log"))

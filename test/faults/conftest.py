@@ -13,6 +13,8 @@ from het_ros.tools.footage import open_footage
 from het_ros.tools.make_bag import make_bag
 from het_ros.tools.tracker_process import TrackerProcess, free_domain
 
+from .lockstep import TRACKER, LockStep, crossing
+
 
 @pytest.fixture(scope="session")
 def crossing_bag(sequences, tmp_path_factory):
@@ -23,13 +25,11 @@ def crossing_bag(sequences, tmp_path_factory):
 
 
 @pytest.fixture(scope="module")
-def tracker_of_the_module(tmp_path_factory):
+def tracker_of_the_module(installed, tmp_path_factory):
     """``tracker_of_the_module(*arguments)``: one installed tracker for all tests of a file.
 
     Gives a :class:`Graph` that sees it and its log; at the end it must still run.
     """
-    if not (EXECUTABLES / "tracker").exists():
-        pytest.skip("nothing installed: run `make build`, and source install/setup.bash")
     log = tmp_path_factory.mktemp("tracker") / "log.txt"
     with pytest.MonkeyPatch.context() as patch:
         patch.setitem(os.environ, "ROS_AUTOMATIC_DISCOVERY_RANGE", "LOCALHOST")
@@ -50,3 +50,19 @@ def tracker_of_the_module(tmp_path_factory):
             with tracker:
                 tracker.check()
             assert "Traceback" not in log.read_text()
+
+
+@pytest.fixture(scope="module")
+def connected(tracker_of_the_module, sequences):
+    """A :class:`LockStep` with the tracker of a file; ``log`` and ``pid`` are the tracker's."""
+    graph, log = tracker_of_the_module(*TRACKER)
+    made = LockStep.connect(graph, crossing(sequences))
+    made.log, made.pid = log, tracker_of_the_module.pid()
+    return made
+
+
+@pytest.fixture
+def lockstep(connected):
+    """The file's :class:`LockStep`, at the beginning of a stream."""
+    connected.begin()
+    return connected

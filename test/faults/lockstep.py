@@ -111,6 +111,12 @@ class LockStep:
             self.send(delivery, delivery.stamp > self.newest)
             self.newest = max(self.newest, delivery.stamp)
 
+    def follow(self, stream: list[Delivery]) -> None:
+        """Send a stream, and a box for its first frame."""
+        self.play(stream[:1])
+        self.start(stream[0])
+        self.play(stream[1:])
+
     def start(self, delivery: Delivery) -> None:
         """A box for a frame that was sent."""
         got = self.camera.got

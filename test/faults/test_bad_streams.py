@@ -11,29 +11,7 @@ from het_ros.faults.disturb import delay, duplicate, freeze, lose, shift, swap
 from het_ros.ros.messages import stamp_ns
 from het_ros.ros.status import status_values
 
-from .lockstep import TRACKER, LockStep, crossing
-
 FRAMES = 60
-
-
-@pytest.fixture(scope="module")
-def connected(tracker_of_the_module, sequences):
-    graph, log = tracker_of_the_module(*TRACKER)
-    made = LockStep.connect(graph, crossing(sequences))
-    made.log = log
-    return made
-
-
-@pytest.fixture
-def lockstep(connected):
-    connected.begin()
-    return connected
-
-
-def run(lockstep, stream) -> None:
-    lockstep.play(stream[:1])
-    lockstep.start(stream[0])
-    lockstep.play(stream[1:])
 
 
 @pytest.mark.parametrize("share", [0.1, 0.3])
@@ -41,7 +19,7 @@ def test_lost_frames(lockstep, share):
     """What arrives is followed: over the gaps the motion model carries the target."""
     stream = lose(lockstep.steady(FRAMES), share, np.random.default_rng(1))
     assert len(stream) < FRAMES * (1 - share / 2)
-    run(lockstep, stream)
+    lockstep.follow(stream)
     overlaps = lockstep.overlaps(stream)
     assert np.mean(overlaps) > 0.5 and min(overlaps) > 0.2
     assert lockstep.state() == "TRACKING"
@@ -58,7 +36,7 @@ def test_lost_frames(lockstep, share):
 )
 def test_doubled_late_and_reordered_frames_are_dropped_and_counted(lockstep, fault, counted):
     stream = fault(lockstep.steady(FRAMES), np.random.default_rng(2))
-    run(lockstep, stream)
+    lockstep.follow(stream)
     lockstep.all_counted()
     newest, dropped = -1, 0
     for delivery in stream:
@@ -76,7 +54,7 @@ def test_doubled_late_and_reordered_frames_are_dropped_and_counted(lockstep, fau
 def test_a_frozen_stamp(lockstep):
     """A driver that stamps twenty frames alike: those are no news, and then it goes on."""
     stream = freeze(lockstep.steady(FRAMES), 20, 40)
-    run(lockstep, stream)
+    lockstep.follow(stream)
     lockstep.all_counted()
     assert lockstep.counted("duplicate") == 19
     assert lockstep.state() == "TRACKING"
@@ -86,7 +64,7 @@ def test_a_frozen_stamp(lockstep):
 def test_stamps_that_go_backwards(lockstep):
     """A clock set back by 5 s: the track is dropped at once, a box starts the next one."""
     stream = shift(lockstep.steady(FRAMES), 20, -5.0)
-    run(lockstep, stream[:20])
+    lockstep.follow(stream[:20])
     for delivery in stream[20:30]:
         lockstep.send(delivery)
     said = status_values(lockstep.camera.got["status"][-1])
@@ -104,7 +82,7 @@ def test_stamps_that_go_backwards(lockstep):
 def test_stamps_that_leap_ahead(lockstep, seconds):
     """A clock set forward: for all the node can know, the target was away for so long."""
     stream = shift(lockstep.steady(40), 20, seconds)
-    run(lockstep, stream)
+    lockstep.follow(stream)
     said = status_values(lockstep.camera.got["status"][-1])
     assert said["state"] == "LOST" and "no image for" in said["reason"]
     lockstep.start(stream[39])
@@ -114,7 +92,7 @@ def test_stamps_that_leap_ahead(lockstep, seconds):
 def test_a_box_of_another_clock(lockstep):
     """Stamped an hour ahead of the images it waits and says so; an hour behind it is refused."""
     stream = lockstep.steady(20)
-    run(lockstep, stream[:10])
+    lockstep.follow(stream[:10])
     ahead, behind = shift(stream, 0, 3600.0), shift(stream, 0, -600.0)
     for odd in (ahead[9], behind[9]):
         lockstep.send_box(odd)

@@ -18,34 +18,17 @@ from het_ros.bench.process import usage
 from het_ros.faults.process import look
 from het_ros.ros.messages import polygon_from_box
 
-from .lockstep import TRACKER, LockStep, crossing, header, pixels_of
+from .lockstep import crossing, header, pixels_of
 
 FLOOD = 1000  # at once, again with every frame
 MOST_MORE = 60.0  # MB that the node may hold more; one 8k image is 100
-
-
-@pytest.fixture(scope="module")
-def connected(tracker_of_the_module, sequences):
-    graph, log = tracker_of_the_module(*TRACKER)
-    made = LockStep.connect(graph, crossing(sequences))
-    made.log = log
-    made.pid = tracker_of_the_module.pid()
-    return made
-
-
-@pytest.fixture
-def lockstep(connected):
-    connected.begin()
-    return connected
 
 
 @pytest.fixture
 def steady_memory(lockstep):
     """The node holds no more memory at the end than at the beginning, but for MOST_MORE."""
     stream = lockstep.steady(5)
-    lockstep.play(stream[:1])
-    lockstep.start(stream[0])
-    lockstep.play(stream[1:])
+    lockstep.follow(stream)
     lockstep.begin()
     before = look(lockstep.pid)
     yield

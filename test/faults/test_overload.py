@@ -2,26 +2,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """Three times as many frames as the installed tracker can process."""
 
-import os
-
-import pytest
-from conftest import EXECUTABLES
-
 from het_ros.faults.overload import overload
 
 
-@pytest.fixture
-def environment():
-    """The measurement chooses a domain for its process: take that back."""
-    before = dict(os.environ)
-    yield
-    os.environ.clear()
-    os.environ.update(before)
-
-
-def test_newest_wins_and_every_other_frame_is_counted(environment):
-    if not (EXECUTABLES / "tracker").exists():
-        pytest.skip("nothing installed: run `make build`, and source install/setup.bash")
+def test_newest_wins_and_every_other_frame_is_counted(installed, own_environment):
     measured = overload((320, 240), 1.5, ())
     assert measured["times"] > 1.5  # of what it can process; 3 where the camera gets there
     assert measured["answered"] < measured["sent"]

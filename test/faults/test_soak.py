@@ -5,10 +5,8 @@
 from __future__ import annotations
 
 import json
-import os
 
 import pytest
-from conftest import EXECUTABLES
 
 from het_ros.faults.soak import main
 from het_ros.faults.verdict import judge
@@ -93,16 +91,9 @@ def test_wrong_arguments(capsys, tmp_path):
 
 
 @pytest.mark.slow
-def test_a_short_soak(tmp_path, capsys):
+def test_a_short_soak(installed, own_environment, tmp_path, capsys):
     """It runs, tracks and reports; half a minute is too short for a verdict on memory."""
-    if not (EXECUTABLES / "tracker").exists():
-        pytest.skip("nothing installed: run `make build`, and source install/setup.bash")
-    before = dict(os.environ)
-    try:
-        code = main(["--minutes", "0.5", "--loop", "8", "--out", str(tmp_path)])
-    finally:
-        os.environ.clear()
-        os.environ.update(before)
+    code = main(["--minutes", "0.5", "--loop", "8", "--out", str(tmp_path)])
     assert code in (0, 1)
     soak = json.loads((tmp_path / "soak.json").read_text())
     assert soak["figures"]["answered_share"] > 0.5 and soak["figures"]["tracking"] > 100

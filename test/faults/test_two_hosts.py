@@ -10,17 +10,15 @@ import subprocess
 import sys
 
 import pytest
-from conftest import EXECUTABLES, PATIENCE
+from conftest import PATIENCE
 
 from het_ros.tools.two_hosts import namespaces
 
 
 @pytest.fixture
-def two_hosts():
+def two_hosts(installed):
     if os.geteuid() != 0:
         pytest.skip("network namespaces take root")
-    if not (EXECUTABLES / "tracker").exists():
-        pytest.skip("nothing installed: run `make build`, and source install/setup.bash")
     try:
         with namespaces():
             yield

@@ -5,7 +5,6 @@
 from __future__ import annotations
 
 import dataclasses
-import os
 
 import pytest
 
@@ -43,9 +42,5 @@ def short_bag(crossing, tmp_path_factory):
 
 
 @pytest.fixture(autouse=True)
-def own_environment():
-    """The tools choose a ROS domain and a profile for their process: take that back."""
-    before = dict(os.environ)
-    yield
-    os.environ.clear()
-    os.environ.update(before)
+def taken_back(own_environment):
+    """The tools choose a ROS domain and a profile for their process."""
