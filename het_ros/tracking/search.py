@@ -1,6 +1,6 @@
 # Copyright 2026 het_ros maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""Where a hidden target is looked for: one search window a frame, farther and farther out."""
+"""Where a hidden target is looked for: farther and farther out, and later at other sizes."""
 
 from __future__ import annotations
 
@@ -13,6 +13,8 @@ Floats = NDArray[np.float64]
 _NEAR = ((0, 0), (1, 0), (-1, 0), (0, 1), (0, -1), (1, 1), (-1, -1), (1, -1), (-1, 1))
 _FAR = ((2, 0), (-2, 0), (2, 1), (-2, -1), (2, -1), (-2, 1), (3, 0), (-3, 0))
 _SPIRAL = np.array(_NEAR + _FAR, float)
+_SIZES = (0.84, 1.19, 0.71, 1.41)  # over the size when last seen
+_OTHER_SIZES_AFTER = 0.7  # s
 
 
 def search_centre(hidden: int, predicted: Floats, seen_at: Floats, reach: Floats) -> Floats:
@@ -31,3 +33,18 @@ def search_centre(hidden: int, predicted: Floats, seen_at: Floats, reach: Floats
         return predicted
     step = (hidden // 2) % min(1 + hidden // 2, len(_SPIRAL))
     return np.asarray(seen_at + _SPIRAL[step] * reach)
+
+
+def other_size(hidden: int, hidden_for: float) -> float | None:
+    """At what part of its size the target is looked for a second time in this frame, or None.
+
+    Who stays away comes back nearer or farther, and the features know one size only. The second
+    look costs as much as the first, so it is for those who were gone for long.
+
+    Args:
+        hidden: frames since the target was last seen.
+        hidden_for: s since then.
+    """
+    if hidden_for < _OTHER_SIZES_AFTER:
+        return None
+    return _SIZES[(hidden // 2) % len(_SIZES)]

@@ -20,7 +20,7 @@ from het_ros.tracking.compressive import Features, integral_images
 from het_ros.tracking.config import TrackerConfig
 from het_ros.tracking.cost import check_cost
 from het_ros.tracking.estimate import Estimate, Patch, State
-from het_ros.tracking.flow import Flow, Sight, gray_of, trace
+from het_ros.tracking.flow_prior import FlowPrior
 from het_ros.tracking.layers import (
     base_ensembles,
     colour_model,
@@ -31,7 +31,7 @@ from het_ros.tracking.layers import (
     whole,
 )
 from het_ros.tracking.response import Peak, find_peak
-from het_ros.tracking.search import search_centre
+from het_ros.tracking.search import other_size, search_centre
 from het_ros.tracking.sub_patches import draw_sub_patches, to_be_updated
 from het_ros.tracking.trust import Evidence, Trust, Verdict
 from het_ros.tracking.window import Window, cut_window
@@ -42,9 +42,6 @@ Witness = Callable[[Box], bool]
 
 # A rival is a place of the target at least this part of its side away from the best one.
 _RIVAL_APART = 0.35
-_FLOW_SIGMA = 0.12  # target sides, how exact flow is
-_FLOW_AFTER = 1.0  # s in sight: just back, flow would go with who passes in front
-_FLOW_SHARE = 0.2  # of the points: fewer that agree say nothing
 _SMALLEST_SIDE = 3.0  # px: below this a target is not shrunk any more
 
 
@@ -56,11 +53,13 @@ class Frame:
         window: the pixels, with its places counted in cells.
         planes: C channels, (H, W) uint8.
         features: (m, rows, columns), maps of the compressive features.
+        growth: size at which the target is looked for, over that of its first box.
     """
 
     window: Window
     planes: tuple[Image, ...]
     features: Features
+    growth: float
 
 
 @dataclass(frozen=True)
@@ -114,10 +113,9 @@ class Target:
         self._scale = scale_filter(config, self._cells)
         self._trust = Trust(config) if config.trust else None
         self._motion = motion_model(config, box)
-        self._before: Sight | None = None
-        self._in_sight_for = math.inf
+        self._flow = FlowPrior(config, self._cells)
         self._seen_at = np.array(box.centre)
-        frame = self._look(image, self._seen_at)
+        frame = self._look(image, self._seen_at, self._growth)
         self._learn(frame, self._corner_in(frame.window), np.ones(config.sub_patches, bool), 1.0)
 
     def follow(self, image: Image, dt: float, witness: Witness | None = None) -> Estimate:
@@ -130,14 +128,12 @@ class Target:
         """
         self._motion.predict(dt)
         step = self._motion.step(dt)
-        hidden = self._trust.hidden_frames if self._trust else 0
-        reach = self._radius * self._unit * self._growth
-        frame = self._look(image, search_centre(hidden, self._motion.centre, self._seen_at, reach))
-        found = self._measure(frame)
+        frame, found = self._search(image)
         centre = frame.window.to_image(found.corner + np.array(self._cells) / 2)
         verdict = Verdict.SEEN
+        hidden = bool(self._trust and self._trust.hidden_frames)
         if self._trust and found.evidence:
-            witnessed = witness is None or witness(self._box_at(centre))
+            witnessed = witness is None or witness(self._box_at(centre, frame.growth))
             verdict = self._trust.judge(found.evidence, step, witnessed)
         if verdict is Verdict.HIDDEN:
             self._motion.coast()
@@ -147,11 +143,14 @@ class Target:
             else:
                 self._motion.correct(centre, float(found.omega.mean()))
             self._seen_at = centre
+            self._growth = frame.growth
         if not self._trust and not self.box.touches_image(image.shape[1], image.shape[0]):
             return self.estimate(0.0, State.LOST)
         score = self._update_model(frame, found, verdict, step)
-        self._in_sight_for = 0.0 if verdict is Verdict.HIDDEN else self._in_sight_for + step
-        self._before = self._sight(frame) if self._in_sight_for > _FLOW_AFTER else None
+        if verdict is Verdict.HIDDEN:
+            self._flow.forget()
+        else:
+            self._flow.remember(frame.window, self.box, step)
         state = self._trust.state if self._trust else State.TRACKING
         patches = () if verdict is Verdict.HIDDEN else self._patches(frame.window, found)
         return self.estimate(score, state, patches)
@@ -159,11 +158,11 @@ class Target:
     @property
     def box(self) -> Box:
         """The target's box by the motion model, px."""
-        return self._box_at(self._motion.centre)
+        return self._box_at(self._motion.centre, self._growth)
 
-    def _box_at(self, centre: Floats) -> Box:
-        """A box of the target's size, px."""
-        width, height = self._first_size * self._growth
+    def _box_at(self, centre: Floats, growth: float) -> Box:
+        """A box ``growth`` times as large as the first one, px."""
+        width, height = self._first_size * growth
         return Box.from_centre(float(centre[0]), float(centre[1]), float(width), float(height))
 
     def estimate(self, score: float, state: State, patches: tuple[Patch, ...] = ()) -> Estimate:
@@ -172,13 +171,33 @@ class Target:
             self.box, self._motion.velocity, self._motion.covariance, score, state, patches
         )
 
-    def _look(self, image: Image, centre: Floats) -> Frame:
+    def _search(self, image: Image) -> tuple[Frame, Measurement]:
+        """Look for the target; for one that is hidden for long also elsewhere at another size."""
+        hidden = self._trust.hidden_frames if self._trust else 0
+        first = self._look_for(image, hidden, 1.0)
+        size = other_size(hidden, self._trust.hidden_for) if self._trust else None
+        if size is None:
+            return first
+        second = self._look_for(image, hidden + 1, size)
+        assert self._trust and first[1].evidence and second[1].evidence
+        surely = self._trust.is_surely_back(second[1].evidence, first[1].evidence)
+        return second if surely else first
+
+    def _look_for(self, image: Image, hidden: int, size: float) -> tuple[Frame, Measurement]:
+        """One look at the place that is ``hidden``'s turn, at ``size`` times the present size."""
+        growth = self._growth * size
+        reach = self._radius * self._unit * growth
+        centre = search_centre(hidden, self._motion.centre, self._seen_at, reach)
+        frame = self._look(image, centre, growth)
+        return frame, self._measure(frame)
+
+    def _look(self, image: Image, centre: Floats, growth: float) -> Frame:
         """The window with every place at which a sub-patch is looked for, and its maps."""
         config = self._config
         whole = config.working_side > 0
         margin = math.ceil(self._radius) + (0 if whole else 1)
-        unit = self._unit * self._growth
-        corner = centre - np.array([self.box.w, self.box.h]) / 2 - margin * unit
+        unit = self._unit * growth
+        corner = centre - self._first_size * growth / 2 - margin * unit
         width, height = (math.ceil(cells) + 2 * margin for cells in self._cells)
         scale = config.cell / unit
         window = cut_window(
@@ -191,7 +210,7 @@ class Target:
         )
         planes = channel_stack(window.pixels, self._channels, config.cell)
         features = self._features.maps(integral_images(planes))
-        return Frame(window.in_cells(config.cell), planes, features)
+        return Frame(window.in_cells(config.cell), planes, features, growth)
 
     def _measure(self, frame: Frame) -> Measurement:
         """Bottom and middle layer."""
@@ -228,7 +247,7 @@ class Target:
         if config.colour_weight:
             likelihood = cell_means(self._colour.likelihood(frame.window.pixels), config.cell)
             colour = box_means(likelihood, whole(self._cells), (rows, columns))
-        prior = self._prior(frame.window, self._flow(frame), (colour.shape[0], colour.shape[1]))
+        prior = self._flow.over(frame.window, self._motion.centre, colour.shape)
         offsets = self._sub_patches.offsets.astype(np.intp)
         apart = (
             max(2, round(_RIVAL_APART * self._cells[0])),
@@ -236,48 +255,14 @@ class Target:
         )
         peak = find_peak(scores, offsets, colour, config.colour_weight, apart, prior)
         omega = np.clip(peak.patch_scores, config.weight_low, config.weight_high)
-        evidence = self._evidence(frame.window, peak, omega)
+        evidence = self._evidence(frame, peak, omega)
         corners = self._sub_patches.corners(peak.corner)
         return Measurement(peak.corner, corners, omega, evidence, scores)
 
-    def _sight(self, frame: Frame) -> Sight | None:
-        """What optical flow needs of this frame in the next one."""
-        if not self._config.flow_weight:
-            return None
-        return Sight(self._in_px(frame.window), gray_of(frame.window.pixels), self.box)
-
-    def _flow(self, frame: Frame) -> Flow | None:
-        """Where the target's pixels of the last frame went, if flow is used and finds it."""
-        if self._before is None:
-            return None
-        moved = self._motion.centre - np.array(self._before.box.centre)
-        window = self._in_px(frame.window)
-        flow = trace(self._before, window, gray_of(frame.window.pixels), moved)
-        return flow if flow and flow.share > _FLOW_SHARE else None
-
-    def _in_px(self, window: Window) -> Window:
-        """A window in cells with its places counted in px."""
-        return window.in_cells(1 / self._config.cell)
-
-    def _prior(self, window: Window, flow: Flow | None, shape: tuple[int, int]) -> Features:
-        """(rows, columns) float32: what a place's vote is multiplied by, 1 and more.
-
-        It multiplies: a post that slides over the target moves smoothly too, but does not look
-        like it.
-        """
-        if flow is None:
-            return np.ones(shape, np.float32)
-        corner = window.to_window(flow.centre) - np.array(self._cells) / 2
-        sigma = _FLOW_SIGMA * math.sqrt(self._cells[0] * self._cells[1])
-        down = np.exp(-0.5 * ((np.arange(shape[0]) - corner[1]) / sigma) ** 2)
-        across = np.exp(-0.5 * ((np.arange(shape[1]) - corner[0]) / sigma) ** 2)
-        weight = self._config.flow_weight * flow.share
-        return np.asarray(1 + weight * np.outer(down, across), np.float32)
-
-    def _evidence(self, window: Window, peak: Peak, omega: Floats) -> Evidence:
+    def _evidence(self, frame: Frame, peak: Peak, omega: Floats) -> Evidence:
         """What speaks for a peak; distances in target sides."""
-        centre = window.to_image(peak.corner + np.array(self._cells) / 2)
-        side = math.sqrt(self.box.area)
+        centre = frame.window.to_image(peak.corner + np.array(self._cells) / 2)
+        side = frame.growth * math.sqrt(self._first_size.prod())
         return Evidence(
             peak.template,
             peak.colour,

@@ -22,6 +22,7 @@ _TWIN_TEMPLATE = 0.75  # share of the score's mean that makes a rival a twin
 _TWIN_TIME = 1.2  # s after a twin was beside the target in which it may be either
 _FAR = 0.7  # target sides from the prediction; a target that comes back there ...
 _RETURN_FAR = 0.85  # ... must be recognised with this probability
+_RETURN_RESIZED = 0.9  # and one that comes back at another size with this
 _ANY_RIVAL = 10.0  # shares beyond this say no more
 _YOUNG = 10  # frames in which the model has seen too little to be ambiguous about a rival
 _NEVER_BELOW = 0.2  # relative template score that nothing can excuse
@@ -73,7 +74,7 @@ class Trust:
         self._template = 1.0
         self._colour: float | None = None
         self._frames = 0
-        self._hidden_for = 0.0
+        self.hidden_for = 0.0
         self._doubted_for = 0.0
         self._since_twin = math.inf
         self.hidden_frames = 0
@@ -91,36 +92,56 @@ class Trust:
         self._frames += 1
         if self._colour is None:
             self._colour = evidence.colour
-        template = evidence.template / self._template
-        # Without a colour model the colours neither speak for a place nor against it.
-        colour = evidence.colour / self._colour if self._colour else 1.0
-        rival = min(max(evidence.rival, 0.0) / max(evidence.template, 1e-6), _ANY_RIVAL)
-        relative = replace(evidence, template=template, colour=colour, rival=rival)
+        relative = self._relative(evidence)
         verdict = Verdict.HIDDEN
         if witnessed and (self.state is State.TRACKING or self._is_back(relative)):
-            verdict = self._verdict(template, colour, rival)
+            verdict = self._verdict(relative)
         self._doubted_for = self._doubted_for + dt if verdict is Verdict.DOUBTED else 0.0
         if self._doubted_for > _LONGEST_DOUBT:
             verdict = Verdict.HIDDEN
-        self.score = probability(evidence.template, self._template, colour, rival)
-        twin = rival > self._limits.twin and rival * template > _TWIN_TEMPLATE
-        self._since_twin = 0.0 if twin else self._since_twin + dt
-        if self._since_twin < _TWIN_TIME:
-            self.score = min(self.score, 0.5)
+        self.score = self._rate(relative, dt)
         if verdict is Verdict.HIDDEN:
-            self._hidden_for += dt
+            self.hidden_for += dt
             self.hidden_frames += 1
-            lost = self._hidden_for > self._limits.lost_after or self.state is State.LOST
+            lost = self.hidden_for > self._limits.lost_after or self.state is State.LOST
             self.state = State.LOST if lost else State.COASTING
             self.score = 0.0 if lost else min(self.score, 0.5)
             return verdict
-        self._hidden_for = 0.0
+        self.hidden_for = 0.0
         self.hidden_frames = 0
         self.state = State.TRACKING
         if verdict is Verdict.SEEN:
             self._template += _RUNNING_RATE * (evidence.template - self._template)
             self._colour += _RUNNING_RATE * (evidence.colour - self._colour)
         return verdict
+
+    def is_surely_back(self, evidence: Evidence, other: Evidence) -> bool:
+        """Whether a hidden target has come back at another size.
+
+        Args:
+            evidence: of the best place at that size.
+            other: of the best place at the size that is known, which must say less.
+        """
+        relative = self._relative(evidence)
+        probability = recognised(relative)
+        least = max(_RETURN_RESIZED, recognised(self._relative(other)))
+        return probability > least and self._is_back(relative)
+
+    def _relative(self, evidence: Evidence) -> Evidence:
+        """Template and colour over their means, the rival over the best place."""
+        template = evidence.template / self._template
+        # Without a colour model the colours neither speak for a place nor against it.
+        colour = evidence.colour / self._colour if self._colour else 1.0
+        rival = min(max(evidence.rival, 0.0) / max(evidence.template, 1e-6), _ANY_RIVAL)
+        return replace(evidence, template=template, colour=colour, rival=rival)
+
+    def _rate(self, relative: Evidence, dt: float) -> float:
+        """The score of a frame; beside a twin, and for a while after it, nobody is sure."""
+        template, colour, rival = relative.template, relative.colour, relative.rival
+        score = probability(template * self._template, self._template, colour, rival)
+        twin = rival > self._limits.twin and rival * template > _TWIN_TEMPLATE
+        self._since_twin = 0.0 if twin else self._since_twin + dt
+        return min(score, 0.5) if self._since_twin < _TWIN_TIME else score
 
     def _is_back(self, relative: Evidence) -> bool:
         """Whether a hidden target has come back; farther off only on stronger evidence."""
@@ -131,9 +152,10 @@ class Trust:
         alike = relative.template * relative.colour >= limits.hidden
         return alike and relative.colour >= _RETURN_COLOUR and recognised(relative) >= least
 
-    def _verdict(self, template: float, colour: float, rival: float) -> Verdict:
-        """The rules; template and colour relative to their means, rival to the peak."""
+    def _verdict(self, relative: Evidence) -> Verdict:
+        """The rules."""
         limits = self._limits
+        template, colour, rival = relative.template, relative.colour, relative.rival
         old = self._frames > _YOUNG
         if template < _NEVER_BELOW or (old and template * colour < limits.hidden):
             return Verdict.HIDDEN

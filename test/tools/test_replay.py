@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import signal
+from pathlib import Path
 
 import av
 
@@ -13,6 +14,8 @@ from het_ros.tools.bag_reader import BagReader
 from het_ros.tools.bag_writer import BagWriter
 from het_ros.tools.replay import main
 from het_ros.tools.results import read_csv
+
+SHIPPED = Path(__file__).resolve().parents[2] / "bags" / "follow_walk"
 
 
 def test_a_replay_leaves_a_complete_results_folder(crossing_bag, tmp_path, capsys):
@@ -34,6 +37,17 @@ def test_a_replay_leaves_a_complete_results_folder(crossing_bag, tmp_path, capsy
     with av.open(str(tmp_path / "out" / "track.mp4")) as video:
         assert sum(1 for _ in video.decode(video=0)) == 40
     assert (tmp_path / "out" / "track.png").stat().st_size > 50_000
+
+
+def test_who_is_followed_in_the_shipped_bag_is_followed_past_the_column(tmp_path):
+    assert main([str(SHIPPED), "--out", str(tmp_path)]) == 0
+    with BagReader(SHIPPED) as bag:
+        truth = bag.truth()
+    rows = read_csv(tmp_path / "track.csv")
+    overlaps = [row.box.iou(truth[row.stamp]) if row.box else 0 for row in rows]
+    assert sum(overlaps) / len(rows) > 0.5
+    last = overlaps[-len(rows) // 3 :]
+    assert sum(overlap > 0.3 for overlap in last) > 0.9 * len(last)
 
 
 def test_two_replays_give_the_same_csv(short_bag, tmp_path):

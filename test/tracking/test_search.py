@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from het_ros.tracking.search import search_centre
+from het_ros.tracking.search import other_size, search_centre
 
 PREDICTED, SEEN, REACH = np.array([50.0, 40.0]), np.array([10.0, 20.0]), np.array([8.0, 6.0])
 
@@ -23,3 +23,20 @@ def test_farther_and_farther_and_then_again():
     assert max(distances[:3]) == 1
     assert max(distances) == 3
     assert distances.count(0) > 5
+
+
+@pytest.mark.parametrize("hidden_for", [0.0, 0.1, 0.5])
+def test_who_is_just_gone_is_looked_for_at_one_size(hidden_for):
+    assert other_size(7, hidden_for) is None
+
+
+def test_every_place_is_looked_at_at_every_other_size():
+    """The second look of a frame is where the first one of the next frame is."""
+    looks = {
+        (other_size(hidden, 1.0), tuple(search_centre(hidden + 1, PREDICTED, SEEN, REACH)))
+        for hidden in range(600)
+    }
+    sizes, places = ({look[k] for look in looks} for k in (0, 1))
+    assert min(sizes) < 0.75 < 1.4 < max(sizes)
+    assert 1.0 not in sizes
+    assert len(looks) == len(sizes) * len(places)

@@ -92,10 +92,7 @@ def test_who_is_hidden_is_not_followed_with_confidence(story, seed):
 
 
 @pytest.mark.parametrize(("story", "seed"), AWAY)
-def test_who_comes_out_again_is_followed_again(story, seed, request):
-    if (story, seed) == ("hidden_2s", 0):
-        reason = "two seconds behind the column: it comes back on something else"
-        request.applymarker(pytest.mark.xfail(reason=reason, strict=False))
+def test_who_comes_out_again_is_followed_again(story, seed):
     after = followed(story, seed).afterwards()
     assert np.mean([m.overlap > 0.3 for m in after]) > 0.7
     assert after[-1].estimate.state is State.TRACKING

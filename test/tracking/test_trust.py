@@ -195,3 +195,21 @@ def test_without_colours_the_shape_alone_decides():
     for _ in range(60):
         assert trust.judge(Evidence(1.0, 0.0, 0.1), 1 / 30) is Verdict.SEEN
     assert trust.judge(Evidence(0.1, 0.0, 0.1), 1 / 30) is Verdict.HIDDEN
+
+
+@pytest.mark.parametrize(
+    ("found", "known", "surely"),
+    [
+        (Evidence(0.95, 0.8, 0.2), GONE, True),
+        (Evidence(0.95, 0.8, 0.2), Evidence(1.0, 0.8, 0.1), False),  # better at the known size
+        (Evidence(0.75, 0.64, 0.75, spread=0.1), GONE, False),  # enough at the known size only
+        (Evidence(0.95, 0.3, 0.2), GONE, False),  # other colours
+    ],
+    ids=str,
+)
+def test_another_size_needs_stronger_evidence(found, known, surely):
+    trust = grown_up()
+    for _ in range(30):
+        trust.judge(GONE, 1 / 30)
+    assert trust.is_surely_back(found, known) is surely
+    assert trust.hidden_for == pytest.approx(1.0)
