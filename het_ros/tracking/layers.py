@@ -54,7 +54,11 @@ def base_ensembles(config: TrackerConfig, cells: Cells) -> BaseEnsembles:
     if config.base_ensemble == "ridge":
         sigma = config.label_sigma * math.sqrt(cells[0] * cells[1])
         return RidgeEnsembles(
-            1 - config.learning_rate, config.ridge, (sigma, sigma), config.target_emphasis
+            1 - config.learning_rate,
+            config.ridge,
+            (sigma, sigma),
+            config.target_emphasis,
+            config.first_frame,
         )
     return NaiveBayes(
         config.learning_rate,

@@ -31,6 +31,9 @@ class RidgeEnsembles:
         label_sigma: (in x, in y) deviation of the Gaussian labels, px of the maps.
         emphasis: a place weighs 1 + ``emphasis`` times its largest label. There are thousands
             of background places and a handful of the target's; without it the background wins.
+        first_frame: share of the first frame that every new frame is mixed with, 0..1, so that
+            it is never forgotten: what covers the target for long is learnt bit by bit, but does
+            not become the target.
     """
 
     def __init__(
@@ -39,12 +42,15 @@ class RidgeEnsembles:
         ridge: float,
         label_sigma: tuple[float, float],
         emphasis: float,
+        first_frame: float = 0.0,
     ) -> None:
         self._learning_rate = learning_rate
         self._ridge = ridge
         self._label_sigma = label_sigma
         self._emphasis = emphasis
-        self._gram: Features | None = None  # (m + 1, m + 1)
+        self._first_frame = first_frame
+        self._first: tuple[Features, Features] | None = None  # Gram matrix and moments
+        self._gram: Features = np.empty((0, 0))  # (m + 1, m + 1)
         self._moment: Features = np.empty((0, 0))  # (m + 1, Q)
         self._votes: Features = np.empty((0, 0))  # (m + 1, Q)
         self._rows: Features = np.empty((0, 0))  # (m + 1 + Q, places), used again
@@ -70,13 +76,19 @@ class RidgeEnsembles:
             chosen: (Q,), sub-patches whose labels are taken; the Gram matrix is common to all.
         """
         gram, moment = self._statistics(features, corners)
-        if self._gram is None:
-            self._gram, self._moment = gram, moment
+        if self._first is None:
+            self._first = gram, moment
+            self._gram, self._moment = gram.copy(), moment.copy()
         else:
             rate = self._learning_rate
+            fresh = rate * (1 - self._first_frame)
+            first_gram, first_moment = self._first
             self._gram *= 1 - rate
-            self._gram += rate * gram
-            self._moment[:, chosen] += rate * (moment - self._moment)[:, chosen]
+            self._gram += fresh * gram
+            self._gram += (rate - fresh) * first_gram
+            mixed = fresh * moment + (rate - fresh) * first_moment
+            self._moment[:, chosen] *= 1 - rate
+            self._moment[:, chosen] += mixed[:, chosen]
         regular = self._gram.copy()
         regular.ravel()[:: len(regular) + 1] += self._ridge
         self._votes = _solved(regular, self._moment)
@@ -126,7 +138,7 @@ class RidgeEnsembles:
         return products[: m + 1, : m + 1].copy(), products[: m + 1, m + 1 :].copy()
 
     def _fitted(self) -> Features:
-        if self._gram is None:
+        if self._first is None:
             raise RuntimeError("the base ensembles know no target yet: call learn first")
         return self._votes
 

@@ -15,8 +15,8 @@ def maps(seed=0, dtype=np.float64):
     return np.random.default_rng(seed).normal(size=(M, ROWS, COLUMNS)).astype(dtype)
 
 
-def ensembles(rate=0.25, ridge=0.3, emphasis=6.0):
-    return RidgeEnsembles(rate, ridge, SIGMA, emphasis)
+def ensembles(rate=0.25, ridge=0.3, emphasis=6.0, first_frame=0.0):
+    return RidgeEnsembles(rate, ridge, SIGMA, emphasis, first_frame)
 
 
 def slow_label(x, y, corner):
@@ -72,20 +72,25 @@ def test_the_first_fit_is_weighted_least_squares(ridge, emphasis):
     np.testing.assert_allclose(fast.score_maps(other), slow_scores(votes, other), atol=1e-9)
 
 
-def test_statistics_run_on_at_the_learning_rate():
-    """Two frames blended weigh as the same samples with the weights 1 - rate and rate."""
-    rate, first, second = 0.25, maps(0), maps(1)
-    fast = ensembles(rate)
-    fast.learn(first, CORNERS, EVERYONE)
-    fast.learn(second, CORNERS + 1, EVERYONE)
-    old, new = slow_samples(first, CORNERS, 6.0), slow_samples(second, CORNERS + 1, 6.0)
-    votes = slow_fit(
-        np.vstack([old[0], new[0]]),
-        np.vstack([old[1], new[1]]),
-        np.concatenate([(1 - rate) * old[2], rate * new[2]]),
-        0.3,
+@pytest.mark.parametrize("kept", [0.0, 0.1, 1.0])
+def test_statistics_run_on_at_the_learning_rate(kept):
+    """Frames blended weigh as their samples do, all at once, with the weights of the blend."""
+    rate = 0.25
+    fast = ensembles(rate, first_frame=kept)
+    samples, shares = [], np.array([1.0, 0.0, 0.0])
+    for frame in range(3):
+        fast.learn(maps(frame), CORNERS + frame / 2, EVERYONE)
+        samples.append(slow_samples(maps(frame), CORNERS + frame / 2, 6.0))
+        if frame:
+            shares *= 1 - rate
+            shares[frame] += rate * (1 - kept)
+            shares[0] += rate * kept
+    design, labels = (np.vstack([sample[k] for sample in samples]) for k in (0, 1))
+    weights = np.concatenate(
+        [share * sample[2] for share, sample in zip(shares, samples, strict=True)]
     )
-    np.testing.assert_allclose(fast.score_maps(first), slow_scores(votes, first), atol=1e-9)
+    votes = slow_fit(design, labels, weights, 0.3)
+    np.testing.assert_allclose(fast.score_maps(maps()), slow_scores(votes, maps()), atol=1e-9)
 
 
 def test_labels_of_a_sub_patch_that_is_not_chosen_stay_as_they_were():
