@@ -12,7 +12,7 @@ from contextlib import contextmanager
 from typing import Any
 
 from het_ros.bench.footage import Footage
-from het_ros.tracking import combination, target
+from het_ros.tracking import combination, flow_prior, target
 from het_ros.tracking.base_ensembles import NaiveBayes
 from het_ros.tracking.box import Box
 from het_ros.tracking.colour import ColourModel
@@ -35,7 +35,7 @@ _PLACES: tuple[tuple[str, Any, str], ...] = (
     ("colour", target, "cell_means"),
     ("colour", target, "box_means"),
     ("colour", ColourModel, "learn"),
-    ("flow", target, "trace"),
+    ("flow", flow_prior, "trace"),
     ("peak", target, "find_peak"),
     ("peak", target, "detect"),
     ("peak", combination, "weights"),
