@@ -232,27 +232,17 @@ class Target:
     def _dense(self, frame: Frame, scores: Features) -> Measurement:
         """All sub-patches and the colours vote for every place of the target."""
         config = self._config
-        rows, columns = (
-            side - max_offset
-            for side, max_offset in zip(
-                scores.shape[1:],
-                (
-                    round(self._cells[1]) - self._sub_patches.size[1],
-                    round(self._cells[0]) - self._sub_patches.size[0],
-                ),
-                strict=True,
-            )
-        )
+        patch_columns, patch_rows = self._sub_patches.size
+        rows = scores.shape[1] - (round(self._cells[1]) - patch_rows)
+        columns = scores.shape[2] - (round(self._cells[0]) - patch_columns)
         colour = np.zeros((rows, columns), np.float32)
         if config.colour_weight:
             likelihood = cell_means(self._colour.likelihood(frame.window.pixels), config.cell)
             colour = box_means(likelihood, whole(self._cells), (rows, columns))
         prior = self._flow.over(frame.window, self._motion.centre, colour.shape)
         offsets = self._sub_patches.offsets.astype(np.intp)
-        apart = (
-            max(2, round(_RIVAL_APART * self._cells[0])),
-            max(2, round(_RIVAL_APART * self._cells[1])),
-        )
+        apart_x, apart_y = (max(2, round(_RIVAL_APART * cells)) for cells in self._cells)
+        apart = (apart_x, apart_y)
         peak = find_peak(scores, offsets, colour, config.colour_weight, apart, prior)
         omega = np.clip(peak.patch_scores, config.weight_low, config.weight_high)
         evidence = self._evidence(frame, peak, omega)
