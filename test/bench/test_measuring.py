@@ -57,8 +57,8 @@ def test_sizes_of_the_floor_are_those_of_the_tracker(footage, monkeypatch):
     seen = {}
     whole = target.Target._look
 
-    def look(self, image, centre):
-        frame = whole(self, image, centre)
+    def look(self, image, centre, growth):
+        frame = whole(self, image, centre, growth)
         seen["window"] = frame.window.pixels.shape[:2]
         seen["cells"] = frame.planes[0].shape
         seen["places"] = frame.features.shape[1] * frame.features.shape[2]
