@@ -67,6 +67,11 @@ class Trust:
 
     Args:
         limits: the configuration, of which the thresholds are taken.
+
+    Attributes:
+        state: TRACKING, COASTING or LOST.
+        score: probability that the last frame's box is right, 0..1.
+        hidden_frames, hidden_for: frames, and s, since the target was last seen.
     """
 
     def __init__(self, limits: TrackerConfig) -> None:
@@ -74,10 +79,10 @@ class Trust:
         self._template = 1.0
         self._colour: float | None = None
         self._frames = 0
-        self.hidden_for = 0.0
         self._doubted_for = 0.0
         self._since_twin = math.inf
         self.hidden_frames = 0
+        self.hidden_for = 0.0
         self.state = State.TRACKING
         self.score = 1.0
 
