@@ -12,8 +12,7 @@ from rclpy.exceptions import InvalidNodeNameException, ParameterException
 from rclpy.executors import ExternalShutdownException, SingleThreadedExecutor
 from rclpy.utilities import remove_ros_args
 
-from het_ros.ros.threads import one_thread
-from het_ros.ros.tracker_node import TrackerNode
+from het_ros.ros.start import ended_by_ctrl_c
 
 
 def main(args: list[str] | None = None) -> int:
@@ -30,6 +29,9 @@ def main(args: list[str] | None = None) -> int:
         help="names of several nodes on the same images, each with its own target: left,right",
     )
     options = parser.parse_args(remove_ros_args(argv)[1:])
+    with ended_by_ctrl_c():
+        from het_ros.ros.threads import one_thread
+        from het_ros.ros.tracker_node import TrackerNode
     nodes: list[TrackerNode] = []
     one_thread()
     try:
