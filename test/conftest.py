@@ -14,10 +14,10 @@ import sys
 import time
 from pathlib import Path
 
-import cv2
 import hypothesis
 import numpy as np
 import pytest
+from moving_target import FIRST_BOX, moving_target
 
 # A busy machine is no failure: no limit of time for an example.
 hypothesis.settings.register_profile("patient", deadline=None)
@@ -37,24 +37,6 @@ def sequences() -> Path:
     if not any(folder.glob("*/groundtruth_rect*.txt")):
         pytest.skip(f"no real sequences in {folder}: set HET_SEQUENCES to their folder")
     return folder
-
-
-FIRST_BOX = (20, 40, 20, 32)  # of the moving target, px
-
-
-def moving_target(count: int) -> list[np.ndarray]:
-    """BGR frames of 160 x 120 px: a textured target that moves 2 px a frame from FIRST_BOX on."""
-    left, top, width, height = FIRST_BOX
-    rng = np.random.default_rng(5)
-    ground = cv2.GaussianBlur(rng.integers(0, 160, (120, 160, 3), np.uint8), (0, 0), 3)
-    target = cv2.resize(rng.integers(0, 255, (8, 5, 3), np.uint8), (width, height))
-    frames = []
-    for i in range(count):
-        frame = ground.copy()
-        x, y = left + 2 * i, top + i // 2
-        frame[y : y + height, x : x + width] = target
-        frames.append(frame)
-    return frames
 
 
 @pytest.fixture(scope="session")

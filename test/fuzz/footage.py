@@ -5,7 +5,7 @@
 from functools import cache
 
 import numpy as np
-from conftest import FIRST_BOX, moving_target
+from moving_target import FIRST_BOX, moving_target
 
 from het_ros import Box
 
