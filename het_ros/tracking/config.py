@@ -148,6 +148,10 @@ class TrackerConfig:
         low=1e-4,
         high=10,
     )
+    camera_motion: bool = parameter(
+        True,
+        "predict the target in the scene, not in the image, where that is right more often",
+    )
     nominal_dt: float = parameter(
         1 / 30,
         "taken where the real time between frames is not positive",
@@ -249,6 +253,7 @@ class TrackerConfig:
             weight_high=0.9,
             colour_weight=0.0,
             flow_weight=0.0,
+            camera_motion=False,
             scales=1,
             acceleration=20.0,
             measurement_noise=0.05,

@@ -19,6 +19,7 @@ Prior = NDArray[np.float32]
 
 _SIGMA = 0.12  # target sides, how exact flow is
 _AFTER = 1.0  # s in sight: just back, flow would go with who passes in front
+_TRUSTED = 0.5  # score of the last frame from which on flow counts in full
 _SHARE = 0.2  # of the points: fewer that agree say nothing
 
 
@@ -35,6 +36,7 @@ class FlowPrior:
         self._cell = config.cell
         self._cells = np.array(cells)
         self._before: Sight | None = None
+        self._trusted = 1.0
         self._in_sight_for = math.inf
 
     def over(self, window: Window, expected: Floats, shape: tuple[int, int]) -> Prior:
@@ -55,10 +57,16 @@ class FlowPrior:
         sigma = _SIGMA * math.sqrt(self._cells.prod())
         down = np.exp(-0.5 * ((np.arange(shape[0]) - corner[1]) / sigma) ** 2)
         across = np.exp(-0.5 * ((np.arange(shape[1]) - corner[0]) / sigma) ** 2)
-        return np.asarray(1 + self._weight * flow.share * np.outer(down, across), np.float32)
+        weight = self._weight * self._trusted * flow.share
+        return np.asarray(1 + weight * np.outer(down, across), np.float32)
 
-    def remember(self, window: Window, box: Box, dt: float) -> None:
-        """The target is in sight: it is in ``box``, image px, ``dt`` s after the last frame."""
+    def remember(self, window: Window, box: Box, dt: float, score: float = 1.0) -> None:
+        """The target is in sight: it is in ``box``, image px, ``dt`` s after the last frame.
+
+        The lower the ``score`` of that, the less its pixels say: they may be a post's that slides
+        over it.
+        """
+        self._trusted = min(1.0, score / _TRUSTED)
         self._in_sight_for += dt
         if self._weight and self._in_sight_for > _AFTER:
             self._before = Sight(self._in_px(window), gray_of(window.pixels), box)

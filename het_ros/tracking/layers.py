@@ -81,6 +81,7 @@ def scale_filter(config: TrackerConfig, cells: Cells) -> ScaleFilter:
         config.scale_step,
         config.scale_context,
         config.scale_rate,
+        config.first_frame,
     )
 
 

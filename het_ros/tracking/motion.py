@@ -88,6 +88,16 @@ class AdaptiveKalman:
         self._filter.predict(Q=np.zeros((4, 4)))
         return self.centre
 
+    def shift(self, way: Floats) -> None:
+        """Move the prediction of this frame by ``way`` (2,), px: the camera moved its ground."""
+        self._filter.x[:2] = self._filter.x[:2] + way
+        self._before[:2] = self._before[:2] + way
+
+    def change_velocity(self, by: Floats) -> None:
+        """Count the velocity from another frame of reference from now on: ``by`` (2,), px/s."""
+        self._filter.x[2:] = self._filter.x[2:] + by
+        self._steady = self._steady + by
+
     def correct(self, measurement: Floats, mean_weight: float) -> None:
         """Take in the measured centre (2,), px, of this frame.
 

@@ -37,6 +37,7 @@ class ScaleFilter:
         step: ratio of one size to the next.
         context: how much more than the target is looked at.
         learning_rate: weight of the new frame, 0..1.
+        first_frame: share of the first frame in what is learnt, which is never forgotten, 0..1.
     """
 
     def __init__(
@@ -46,10 +47,12 @@ class ScaleFilter:
         step: float,
         context: float,
         learning_rate: float,
+        first_frame: float = 0.0,
     ) -> None:
         self._size = np.array(size, np.float64) * context
         self._step = step
         self._learning_rate = learning_rate
+        self._first_frame = first_frame
         self._exponents = np.arange(levels) - (levels - 1) / 2
         self._label = np.fft.rfft(np.exp(-0.5 * (self._exponents / _LABEL_SIGMA) ** 2))
         self._to_spectrum = _tapered_transform(levels)
@@ -58,6 +61,7 @@ class ScaleFilter:
         # Of the S frequencies of real features the first K = S // 2 + 1 say all.
         self._numerator: Spectra = np.empty(0, np.complex64)  # (d, K)
         self._energy: Floats = np.empty(0)  # (K,)
+        self._first: tuple[Spectra, Floats] | None = None  # both of the first frame
 
     def change(self, planes: Planes, centre: Floats) -> float:
         """Ratio of the target's size in this frame to the present size.
@@ -86,12 +90,16 @@ class ScaleFilter:
         parts = spectrum.view(np.float32)
         energy = np.einsum("dk,dk->k", parts, parts).reshape(-1, 2).sum(axis=1)
         numerator = np.conj(spectrum) * self._label.astype(np.complex64)
-        if not self._energy.size:
+        if self._first is None:
             self._numerator, self._energy = numerator, energy.astype(np.float64)
+            self._first = self._numerator.copy(), self._energy
             return
+        share = self._first_frame
+        numerator = (1 - share) * numerator + share * self._first[0]
+        energy = (1 - share) * energy + share * self._first[1]
         self._numerator *= 1 - self._learning_rate
         self._numerator += self._learning_rate * numerator
-        self._energy += self._learning_rate * (energy - self._energy)
+        self._energy = self._energy + self._learning_rate * (energy - self._energy)
 
     def _spectrum(self, planes: Planes, centre: Floats, ratio: float) -> Spectra:
         """(d, K): channel means over the grid, centred and scaled, transformed over the sizes."""

@@ -21,6 +21,7 @@ from het_ros.tracking.config import TrackerConfig
 from het_ros.tracking.cost import check_cost
 from het_ros.tracking.estimate import Estimate, Patch, State
 from het_ros.tracking.flow_prior import FlowPrior
+from het_ros.tracking.inertia import Inertia
 from het_ros.tracking.layers import (
     base_ensembles,
     colour_model,
@@ -42,6 +43,7 @@ Witness = Callable[[Box], bool]
 
 # A rival is a place of the target at least this part of its side away from the best one.
 _RIVAL_APART = 0.35
+_SIZES_KNOWN = 15  # frames after which the scale filter has seen enough to be followed
 _SMALLEST_SIDE = 3.0  # px: below this a target is not shrunk any more
 
 
@@ -97,6 +99,7 @@ class Target:
         self._config = config
         self._first_size = np.array([box.w, box.h])
         self._growth = 1.0
+        self._sized_frames = 0
         rng = np.random.default_rng(config.seed)
         self._cells, self._unit = grid(config, box)
         check_cost(config, self._cells)
@@ -115,6 +118,7 @@ class Target:
         self._motion = motion_model(config, box)
         self._flow = FlowPrior(config, self._cells)
         self._seen_at = np.array(box.centre)
+        self._inertia = Inertia(image, self._seen_at) if config.camera_motion else None
         frame = self._look(image, self._seen_at, self._growth)
         self._learn(frame, self._corner_in(frame.window), np.ones(config.sub_patches, bool), 1.0)
 
@@ -128,6 +132,7 @@ class Target:
         """
         self._motion.predict(dt)
         step = self._motion.step(dt)
+        self._go_with_camera(image, step)
         frame, found = self._search(image)
         centre = frame.window.to_image(found.corner + np.array(self._cells) / 2)
         verdict = Verdict.SEEN
@@ -137,11 +142,16 @@ class Target:
             verdict = self._trust.judge(found.evidence, step, witnessed)
         if verdict is Verdict.HIDDEN:
             self._motion.coast()
+            if self._inertia:
+                self._inertia.forget()
         else:
             if hidden:
                 self._motion.restart(centre)
             else:
                 self._motion.correct(centre, float(found.omega.mean()))
+            if self._inertia:
+                side = math.sqrt(self.box.area)
+                self._motion.change_velocity(self._inertia.observe(centre, side, step))
             self._seen_at = centre
             self._growth = frame.growth
         if not self._trust and not self.box.touches_image(image.shape[1], image.shape[0]):
@@ -150,7 +160,7 @@ class Target:
         if verdict is Verdict.HIDDEN:
             self._flow.forget()
         else:
-            self._flow.remember(frame.window, self.box, step)
+            self._flow.remember(frame.window, self.box, step, score)
         state = self._trust.state if self._trust else State.TRACKING
         patches = () if verdict is Verdict.HIDDEN else self._patches(frame.window, found)
         return self.estimate(score, state, patches)
@@ -167,9 +177,18 @@ class Target:
 
     def estimate(self, score: float, state: State, patches: tuple[Patch, ...] = ()) -> Estimate:
         """What the motion model holds, as an estimate."""
-        return Estimate(
-            self.box, self._motion.velocity, self._motion.covariance, score, state, patches
-        )
+        velocity = self._motion.velocity
+        if self._inertia:
+            carried = self._inertia.carried
+            velocity = velocity[0] + float(carried[0]), velocity[1] + float(carried[1])
+        return Estimate(self.box, velocity, self._motion.covariance, score, state, patches)
+
+    def _go_with_camera(self, image: Image, dt: float) -> None:
+        """Move what is kept of the target's place by what the camera did, where that counts."""
+        if self._inertia:
+            shift = self._inertia.shift(image, dt)
+            self._motion.shift(shift)
+            self._seen_at = self._seen_at + shift
 
     def _search(self, image: Image) -> tuple[Frame, Measurement]:
         """Look for the target; for one that is hidden for long also elsewhere at another size."""
@@ -283,7 +302,9 @@ class Target:
         if self._config.scales == 1:
             return 1.0
         ratio = self._scale.change(frame.planes, corner + np.array(self._cells) / 2)
-        fastest = math.exp(self._config.growth_limit * dt)
+        self._sized_frames = min(self._sized_frames + 1, _SIZES_KNOWN)
+        known = self._sized_frames / _SIZES_KNOWN
+        fastest = math.exp(self._config.growth_limit * dt * known)
         ratio = min(max(ratio, 1 / fastest), fastest)
         least = _SMALLEST_SIDE / float(self._first_size.min())
         growth = max(self._growth * ratio, min(self._growth, least))

@@ -26,6 +26,9 @@ _RETURN_RESIZED = 0.9  # and one that comes back at another size with this
 _ANY_RIVAL = 10.0  # shares beyond this say no more
 _YOUNG = 10  # frames in which the model has seen too little to be ambiguous about a rival
 _NEVER_BELOW = 0.2  # relative template score that nothing can excuse
+_LIKELY = 0.75  # least score of a place that is clearly the target's, ...
+_CLEAR = 0.6  # ... and the most that the best other place has of its template score
+_BARELY = 0.65  # share of ``hidden`` below which not even such a place is followed
 _SURE = 100.0  # a logit beyond which nothing changes but that exp() overflows
 # Logistic regression of "IoU over 0.5" on the evidence, over the frames of many real tracks.
 _BIAS, _BY_TEMPLATE, _BY_MEAN, _BY_COLOUR, _BY_RIVAL = -8.1, 4.0, 9.2, 1.0, -2.7
@@ -103,7 +106,8 @@ class Trust:
             verdict = self._verdict(relative)
         self._doubted_for = self._doubted_for + dt if verdict is Verdict.DOUBTED else 0.0
         if self._doubted_for > _LONGEST_DOUBT:
-            verdict = Verdict.HIDDEN
+            # Light that changed for good is learnt; what covers the target is not followed.
+            verdict = Verdict.SEEN if self._is_clear(relative) else Verdict.HIDDEN
         self.score = self._rate(relative, dt)
         if verdict is Verdict.HIDDEN:
             self.hidden_for += dt
@@ -140,11 +144,20 @@ class Trust:
         rival = min(max(evidence.rival, 0.0) / max(evidence.template, 1e-6), _ANY_RIVAL)
         return replace(evidence, template=template, colour=colour, rival=rival)
 
+    def _score(self, relative: Evidence) -> float:
+        """Probability that this frame's box is right."""
+        template = relative.template * self._template
+        return probability(template, self._template, relative.colour, relative.rival)
+
+    def _is_clear(self, relative: Evidence) -> bool:
+        """Whether it is likely the target and no other place looks nearly as good."""
+        return relative.rival <= _CLEAR and self._score(relative) >= _LIKELY
+
     def _rate(self, relative: Evidence, dt: float) -> float:
         """The score of a frame; beside a twin, and for a while after it, nobody is sure."""
-        template, colour, rival = relative.template, relative.colour, relative.rival
-        score = probability(template * self._template, self._template, colour, rival)
-        twin = rival > self._limits.twin and rival * template > _TWIN_TEMPLATE
+        score = self._score(relative)
+        twin = relative.rival > self._limits.twin
+        twin = twin and relative.rival * relative.template > _TWIN_TEMPLATE
         self._since_twin = 0.0 if twin else self._since_twin + dt
         return min(score, 0.5) if self._since_twin < _TWIN_TIME else score
 
@@ -162,8 +175,13 @@ class Trust:
         limits = self._limits
         template, colour, rival = relative.template, relative.colour, relative.rival
         old = self._frames > _YOUNG
-        if template < _NEVER_BELOW or (old and template * colour < limits.hidden):
+        if template < _NEVER_BELOW:
             return Verdict.HIDDEN
+        alike = template * colour
+        if old and alike < limits.hidden:
+            # Where the light changes the colours do too, but nothing else looks like the target.
+            clear = alike >= _BARELY * limits.hidden and self._is_clear(relative)
+            return Verdict.DOUBTED if clear else Verdict.HIDDEN
         ambiguous = template < limits.doubt_template and rival > limits.doubt_rival
         # A post that comes in from the side takes the colours away first.
         covered = colour < limits.learn_colour and template < 1

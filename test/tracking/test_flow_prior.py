@@ -57,3 +57,12 @@ def test_who_is_just_back_is_not_followed_by_flow_at_once(picture):
         prior.remember(window_of(picture), BOX, 0.25)
         used.append(prior.over(window_of(picture), CENTRE, SHAPE).max() > 1)
     assert used == [False] * 4 + [True] * 2
+
+
+@pytest.mark.parametrize(("score", "share"), [(1.0, 1.0), (0.5, 1.0), (0.25, 0.5), (0.0, 0.0)])
+def test_flow_from_a_doubtful_place_weighs_less(picture, score, share):
+    prior, sure = FlowPrior(CONFIG, CELLS), FlowPrior(CONFIG, CELLS)
+    prior.remember(window_of(picture), BOX, 1 / 30, score)
+    sure.remember(window_of(picture), BOX, 1 / 30)
+    gained, most = (p.over(window_of(picture), CENTRE, SHAPE).max() - 1 for p in (prior, sure))
+    assert gained == pytest.approx(share * most, abs=1e-6)

@@ -151,3 +151,38 @@ def test_a_target_that_came_back_starts_again():
     motion.predict(1 / 30)
     motion.coast()  # nothing is left of the walk before
     np.testing.assert_allclose(motion.centre, [300, 10], atol=1e-9)
+
+
+def test_a_camera_that_shakes_does_not_move_who_walks_in_the_scene():
+    """The same walk twice, once under a camera that shakes: velocity and covariance are alike."""
+    rng = np.random.default_rng(7)
+    steady, shaken, place = kalman(), kalman(), np.zeros(2)
+    for step in range(1, 30):
+        way, walked = rng.normal(size=2) * 30, np.array([50 + 4.0 * step, 60 - 2.0 * step])
+        place = place + way
+        steady.predict(1 / 30)
+        shaken.predict(1 / 30)
+        shaken.shift(way)
+        if step % 7 == 6:  # hidden for a frame
+            steady.coast()
+            shaken.coast()
+        else:
+            steady.correct(walked, 0.5)
+            shaken.correct(walked + place, 0.5)
+        np.testing.assert_allclose(shaken.centre, steady.centre + place)
+        np.testing.assert_allclose(shaken.velocity, steady.velocity, atol=1e-6)
+    np.testing.assert_allclose(shaken.covariance, steady.covariance)
+
+
+def test_a_velocity_counted_from_elsewhere_carries_on_as_before():
+    motion = kalman()
+    for step in range(1, 20):
+        motion.predict(1 / 30)
+        motion.correct(np.array([50 + 4.0 * step, 60]), 0.5)
+    before = np.array(motion.velocity)
+    motion.change_velocity(np.array([-30.0, 10.0]))
+    np.testing.assert_allclose(motion.velocity, before + np.array([-30, 10]))
+    motion.predict(0.1)
+    motion.shift(np.array([3.0, -1.0]))
+    place, moved = motion.centre, kalman().centre * 0 + before * 0.1
+    np.testing.assert_allclose(place, [50 + 4.0 * 19 + moved[0], 60 + moved[1]], atol=1.5)

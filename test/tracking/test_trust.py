@@ -37,6 +37,8 @@ def grown_up(limits=LIMITS, frames=60, dt=1 / 30):
         (Evidence(0.7, 0.8, 0.9), Verdict.DOUBTED),
         (GONE, Verdict.HIDDEN),
         (Evidence(0.15, 5.0, 0.0), Verdict.HIDDEN),  # no colour excuses a shape that is gone
+        (Evidence(0.65, 0.5, 0.3), Verdict.DOUBTED),  # in other light: nobody else looks so
+        (Evidence(0.65, 0.5, 0.65), Verdict.HIDDEN),  # somebody else does
         (Evidence(0.4, 0.5, 0.1), Verdict.HIDDEN),  # shape and colour both half gone
         (Evidence(0.0, 0.0, 0.0), Verdict.HIDDEN),
         (Evidence(-0.3, 0.8, -0.2), Verdict.HIDDEN),
@@ -174,7 +176,7 @@ def test_what_is_not_seen_is_never_a_confident_box(state, most):
     trust = grown_up()
     # Good enough a shape to raise the score, not good enough to follow.
     for _ in range(100):
-        trust.judge(Evidence(0.45, 0.8, 0.0), 0.1)
+        trust.judge(Evidence(0.3, 0.8, 0.0), 0.1)
         if trust.state is state:
             assert trust.score <= most
     assert trust.state is State.LOST
@@ -213,3 +215,27 @@ def test_another_size_needs_stronger_evidence(found, known, surely):
         trust.judge(GONE, 1 / 30)
     assert trust.is_surely_back(found, known) is surely
     assert trust.hidden_for == pytest.approx(1.0)
+
+
+@pytest.mark.parametrize(
+    ("evidence", "in_the_end"),
+    [
+        (Evidence(0.65, 0.5, 0.3), Verdict.SEEN),  # other light, for good
+        (Evidence(0.75, 0.6, 0.3), Verdict.SEEN),
+        (Evidence(0.7, 0.8, 0.88), Verdict.HIDDEN),  # one of two, nobody knows which
+    ],
+    ids=str,
+)
+def test_a_doubt_that_lasts_ends(evidence, in_the_end):
+    trust = grown_up()
+    verdicts = [trust.judge(evidence, 0.1) for _ in range(7)]
+    assert verdicts[:4] == [Verdict.DOUBTED] * 4
+    assert verdicts[-1] is in_the_end
+
+
+def test_light_that_changed_for_good_is_the_light_in_the_end():
+    trust = grown_up()
+    verdicts = [trust.judge(Evidence(0.8, 0.55, 0.2), 1 / 30) for _ in range(200)]
+    assert trust.state is State.TRACKING
+    assert Verdict.HIDDEN not in verdicts
+    assert verdicts[-20:] == [Verdict.SEEN] * 20
