@@ -15,6 +15,7 @@ from het_ros.bench.footage import Footage
 from het_ros.tracking import combination, flow_prior, target
 from het_ros.tracking.base_ensembles import NaiveBayes
 from het_ros.tracking.box import Box
+from het_ros.tracking.camera import CameraMotion
 from het_ros.tracking.colour import ColourModel
 from het_ros.tracking.compressive import CompressiveFeatures
 from het_ros.tracking.config import TrackerConfig
@@ -25,6 +26,7 @@ from het_ros.tracking.tracker import HierarchicalEnsembleTracker
 
 # Stage, where its function lives, the function's name. None of them calls another of them.
 _PLACES: tuple[tuple[str, Any, str], ...] = (
+    ("camera", CameraMotion, "follow"),
     ("window", target, "cut_window"),
     ("channels", target, "channel_stack"),
     ("integrals", target, "integral_images"),

@@ -97,7 +97,7 @@ class TrackerConfig:
         20.0, "ridge: how much more the target's places weigh than background", low=0, high=1e4
     )
     first_frame: float = parameter(
-        0.1, "ridge: share of the first frame, which is never forgotten", low=0, high=1
+        0.1, "ridge, scale: share of the first frame, which is never forgotten", low=0, high=1
     )
     # Middle layer: combination.
     combination: str = parameter(

@@ -89,6 +89,40 @@ def test_the_last_box_is_right_in_size_too(hard, request):
     assert np.mean(overlaps(frames, estimates)[-10:]) > 0.5
 
 
+class EverySecond:
+    """Footage of which every other frame is left out."""
+
+    def __init__(self, frames):
+        self._frames = frames
+        self.boxes = frames.boxes[::2]
+
+    def image(self, index):
+        return self._frames.image(2 * index)
+
+
+@pytest.fixture(scope="module")
+def shaken(sequence):
+    """Human7 is filmed by hand: at half its rate the target jumps by its own size and more."""
+    frames = EverySecond(sequence("Human7"))
+    return frames, track(frames, 90)
+
+
+def test_a_shaking_camera_is_followed(shaken):
+    frames, estimates = shaken
+    assert np.mean(overlaps(frames, estimates)) > 0.6
+    assert min(overlaps(frames, estimates)) > 0.2
+
+
+def test_the_velocity_is_that_in_the_image(shaken):
+    """Also where the target is predicted in the scene: a second's mean is a second's way."""
+    frames, estimates = shaken
+    for first in (20, 50):
+        second = range(first, first + 30)
+        way = np.subtract(frames.boxes[second[-1]].centre, frames.boxes[second[0]].centre)
+        mean = np.mean([estimates[i].velocity for i in second], axis=0)
+        assert np.abs(mean * DT * len(second) - way).max() < 25
+
+
 def test_same_seed_same_result_to_the_bit(crossing):
     frames, once = crossing
     again = track(frames, 25)

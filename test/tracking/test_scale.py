@@ -127,3 +127,19 @@ def test_nothing_to_see_keeps_the_size():
     scale.learn(flat, np.array([20.0, 15.0]), 1.0)
     ratio = scale.change(flat, np.array([20.0, 15.0]))
     assert 1.02**-8 <= ratio <= 1.02**8  # whatever it is, no farther than it looked
+
+
+@pytest.mark.parametrize(("share", "kept"), [(0.0, False), (0.5, True)])
+def test_the_first_frame_is_kept(sequence, share, kept):
+    """After hundreds of frames of something else the first frame's size is known or forgotten."""
+    frames = sequence("David")
+    image, box = frames.image(0), frames.boxes[0]
+    size = 24 * np.array([box.w, box.h]) / np.sqrt(box.area)
+    scale = ScaleFilter((round(size[0]), round(size[1])), 17, 1.02, 1.2, 0.05, share)
+    planes, centre = planes_of(image, box, 1.0)
+    larger, _ = planes_of(image, box, 1.06)
+    scale.learn(planes, centre, 1.0)
+    for _ in range(200):  # the same target at another size, taken for the present one
+        scale.learn(larger, centre, 1.0)
+    off = abs(scale.change(larger, centre) - 1)
+    assert (off > 0.005) is kept

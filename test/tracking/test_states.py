@@ -9,64 +9,30 @@ import numpy as np
 import pytest
 
 from het_ros import HierarchicalEnsembleTracker, State, TrackerConfig
-from het_ros.scene import Scene, SceneConfig
+from het_ros.scene import SceneConfig, honesty
+from het_ros.scene.honesty import CONFIDENT, IN_SIGHT, f_of_visible
 
 RATE = 15.0
-CONFIDENT = 0.5
-
-
-class Moment:
-    """One frame's estimate beside its truth."""
-
-    def __init__(self, frame, estimate):
-        self.estimate = estimate
-        self.visible = frame.visible
-        self.overlap = estimate.box.iou(frame.box) if frame.box else 0.0
-        self.elsewhere = max((estimate.box.iou(other) for other in frame.others), default=0.0)
-
-    @property
-    def confident(self):
-        return self.estimate.state is State.TRACKING and self.estimate.score > CONFIDENT
-
-    @property
-    def on_somebody_else(self):
-        """Rather on another figure than on the target."""
-        return self.elsewhere > 0.3 and self.elsewhere > self.overlap
 
 
 class Track(list):
     """All moments of a scene, and the frames [first, last) in which the target was hidden."""
 
     def hidden(self):
-        frames = [i for i, moment in enumerate(self) if moment.visible < 0.02]
+        frames = [i for i, moment in enumerate(self) if moment.visible < IN_SIGHT]
         return self[frames[0] : frames[-1] + 1]
 
     def afterwards(self):
         """From a second after the target came out again."""
-        frames = [i for i, moment in enumerate(self) if moment.visible < 0.02]
+        frames = [i for i, moment in enumerate(self) if moment.visible < IN_SIGHT]
         return self[frames[-1] + 1 + int(RATE) :]
 
 
 @cache
 def followed(story, seed):
     """The scene of that story and seed, followed from its first frame with the default."""
-    tracker, track = HierarchicalEnsembleTracker(TrackerConfig()), Track()
     config = SceneConfig(story=story, seed=seed, rate=RATE, width=320, height=240)
-    for frame in Scene(config).frames():
-        estimate = (
-            tracker.update(frame.image, 1 / RATE)
-            if frame.index
-            else tracker.init(frame.image, frame.box)
-        )
-        track.append(Moment(frame, estimate))
-    return track
-
-
-def f_of_visible(moments):
-    """F of TRACKING as the answer to "is the target visible?"."""
-    right = sum(m.estimate.state is State.TRACKING and m.visible >= 0.02 for m in moments)
-    said = sum(m.estimate.state is State.TRACKING for m in moments)
-    return 2 * right / (said + sum(m.visible >= 0.02 for m in moments))
+    return Track(honesty.followed(config))
 
 
 HIDES = (("hidden_500ms", 0), ("hidden_1s", 0), ("hidden_2s", 0), ("hidden_2s", 2))
@@ -109,10 +75,7 @@ def test_the_state_says_whether_the_target_is_in_sight(story, seed):
 )
 def test_no_confident_box_on_somebody_else(story, seed):
     """After the two were apart again; while one covers the other they have one box."""
-    track = followed(story, seed)
-    covered = [i for i, m in enumerate(track) if m.visible < 0.9]
-    for moment in track[covered[-1] + 1 :]:
-        assert not (moment.confident and moment.on_somebody_else)
+    assert honesty.honesty(followed(story, seed), RATE).confident_other == 0
 
 
 @pytest.mark.parametrize(("story", "seed"), AWAY)
