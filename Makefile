@@ -29,7 +29,7 @@ help: ## What there is to make
 	@echo
 	@echo 'make run [VIDEO=file INIT=x,y,w,h | SEQUENCE=folder] [OUT=out/run]'
 	@echo 'make evaluate DATA=folder [OUT=out/evaluate] [TRACKERS=het,csrt] [SEEDS=3]'
-	@echo '     [PROTOCOL=ope|tre|sre|realtime|restart] [SEQUENCES=a,b] [SCHEDULER=tcp://host:8786]'
+	@echo '     [PROTOCOL=ope|tre|sre|passes|realtime|restart] [SEQUENCES=a,b] [SCHEDULER=tcp://host:8786]'
 	@echo 'make bench [OUT=out/bench] [DATA=folder]'
 	@echo 'make fuzz [MINUTES=10] [OUT=out/fuzz]'
 	@echo 'make soak [MINUTES=60] [OUT=out/soak] [SOAK="--size 1280x720 -p seed:=3"]'

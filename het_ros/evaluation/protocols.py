@@ -1,6 +1,6 @@
 # Copyright 2026 het_ros maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""Where runs start and how frames reach the tracker: OPE, TRE, SRE, real time, restarts."""
+"""Where runs start and how frames reach the tracker: one pass or several, in real time, again."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from het_ros.evaluation.sequences import Frames, Sequence
 from het_ros.evaluation.trackers import Tracker
 from het_ros.tracking.box import Box
 
-PROTOCOLS = ("ope", "tre", "sre", "realtime", "restart")
+PROTOCOLS = ("ope", "tre", "sre", "passes", "realtime", "restart")
 TRE_STARTS = 20
 RESTART_GAP = 5  # frames from a failure to the new start (VOT)
 BURN_IN = 10  # frames after a start that do not count for accuracy (VOT)
@@ -31,17 +31,26 @@ class Start:
         variant: its name in files, e.g. "tre07".
         first: the frame it starts at, counted from 0.
         box: the box given to the tracker, px.
+        step: from one frame to the next: 1, or 2 for every other one, or -1 for backwards.
     """
 
     variant: str
     first: int
     box: Box
+    step: int = 1
+
+    @property
+    def rows(self) -> slice:
+        """The frames of the run, in its order."""
+        return slice(self.first, None, self.step)
 
 
 def starts(protocol: str, sequence: Sequence) -> list[Start]:
-    """The starts of a protocol on a sequence: 20 for TRE, 12 for SRE, else 1."""
+    """The starts of a protocol on a sequence: 20 for TRE, 12 for SRE, 5 passes, else 1."""
     if protocol == "tre":
         return _temporal(sequence)
+    if protocol == "passes":
+        return _passes(sequence)
     box = true_box(sequence, 0)
     if protocol == "sre":
         return [Start(f"sre{k:02d}", 0, b) for k, b in enumerate(disturbed(box))]
@@ -54,6 +63,25 @@ def _temporal(sequence: Sequence) -> list[Start]:
     wanted = np.arange(TRE_STARTS) * len(sequence.frames) // TRE_STARTS
     firsts = sorted({int(valid[valid >= w][0]) for w in wanted if (valid >= w).any()})
     return [Start(f"tre{k:02d}", f, true_box(sequence, f)) for k, f in enumerate(firsts)]
+
+
+def _passes(sequence: Sequence) -> list[Start]:
+    """The same frames in five orders, so that luck in one of them does not decide."""
+    count = len(sequence.frames)
+    orders = {
+        "forwards": slice(0, None, 1),
+        "backwards": slice(count - 1, None, -1),
+        "from_a_third": slice(count // 3, None, 1),
+        "back_from_two_thirds": slice(2 * count // 3 - 1, None, -1),
+        "every_second": slice(0, None, 2),
+    }
+    passes = []
+    for name, order in orders.items():
+        visible = np.arange(count)[order][sequence.visible[order]]
+        if len(visible):
+            first = int(visible[0])
+            passes.append(Start(name, first, true_box(sequence, first), order.step))
+    return passes
 
 
 def true_box(sequence: Sequence, frame: int) -> Box:

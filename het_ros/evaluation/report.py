@@ -72,6 +72,7 @@ def title(results: Results) -> str:
         "ope": "One-pass evaluation",
         "tre": "Temporal robustness (20 starts)",
         "sre": "Spatial robustness (12 disturbed starts)",
+        "passes": "Five passes (forwards, backwards, in parts, every second frame)",
         "realtime": "Real time",
         "restart": "Restart after failure",
     }

@@ -16,6 +16,8 @@ from het_ros.evaluation.protocols import Start, starts
 from het_ros.evaluation.sequences import Sequence
 from het_ros.evaluation.trackers import TrackerSpec
 
+FROM_THE_START = slice(0, None, 1)
+
 
 @dataclass(frozen=True)
 class Run:
@@ -25,8 +27,8 @@ class Run:
         tracker, sequence: their names.
         seed: the seed.
         variant: the start's name.
-        first: the frame it started at.
-        track: what the tracker said, one row a frame from ``first`` on.
+        rows: the frames of the sequence, in the run's order.
+        track: what the tracker said, one row for each of these.
         camera: frames/s in real time, or None.
     """
 
@@ -34,7 +36,7 @@ class Run:
     sequence: str
     seed: int
     variant: str
-    first: int
+    rows: slice
     track: Track
     camera: float | None = None
 
@@ -56,11 +58,11 @@ class Plan:
     seeds: int = 1
     cameras: tuple[float, ...] = (20.0, 30.0, 60.0)
 
-    def jobs(self) -> list[tuple[Job, int]]:
-        """Every job with the frame it starts at; sequence by sequence, trackers side by side."""
+    def jobs(self) -> list[tuple[Job, slice]]:
+        """Every job with its frames; sequence by sequence, trackers side by side."""
         cameras = self.cameras if self.protocol == "realtime" else (None,)
         return [
-            (self._job(sequence, images, start, tracker, seed, camera), start.first)
+            (self._job(sequence, images, start, tracker, seed, camera), start.rows)
             for sequence in self.sequences
             for images in (sequence.frames.fingerprint(),)
             for start in starts(self.protocol, sequence)
@@ -86,7 +88,7 @@ class Plan:
         return Job(
             tracker=tracker,
             sequence=sequence.name,
-            frames=sequence.frames.after(start.first),
+            frames=sequence.frames.taken(start.rows),
             box=start.box,
             seed=seed,
             variant=variant,
@@ -117,16 +119,16 @@ def carry_out_plan(
             tracks[job.key] = track
             bar.set_postfix_str(f"{job.tracker.name} {job.sequence}")
             bar.update(len(job.frames))
-    return [_run(job, first, tracks[job.key]) for job, first in planned]
+    return [_run(job, rows, tracks[job.key]) for job, rows in planned]
 
 
-def _run(job: Job, first: int, track: Track) -> Run:
+def _run(job: Job, rows: slice, track: Track) -> Run:
     return Run(
         tracker=job.tracker.name,
         sequence=job.sequence,
         seed=job.seed,
         variant=job.variant,
-        first=first,
+        rows=rows,
         track=track,
         camera=job.camera,
     )

@@ -39,9 +39,9 @@ class Frames:
             raise OSError(f"{self.files[index]} cannot be read as an image")
         return np.asarray(image, np.uint8)
 
-    def after(self, first: int) -> Frames:
-        """The frames from number ``first`` (counted from 0) on."""
-        return Frames(self.files[first:], self.rate)
+    def taken(self, rows: slice) -> Frames:
+        """Some of the frames, in the order of ``rows``."""
+        return Frames(self.files[rows], self.rate)
 
     @property
     def dt(self) -> float:

@@ -24,7 +24,7 @@ Truths = Mapping[str, NDArray[np.float64]]
 def summarise(runs: list[Run], truths: Truths) -> dict[str, Any]:
     """``state``, ``calibration``, ``forewarning`` and ``nis``, where the tracker speaks of it."""
     found: dict[str, Any] = {}
-    pairs = [(run, truths[run.sequence][run.first :]) for run in runs]
+    pairs = [(run, truths[run.sequence][run.rows]) for run in runs]
     speaking = [(run, truth) for run, truth in pairs if (run.track.states[1:] != "").any()]
     if speaking:
         found["state"] = state(speaking)

@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from het_ros.evaluation.drawing import Colour, Image, draw_boxes, draw_label
+from het_ros.evaluation.runs import FROM_THE_START
 from het_ros.evaluation.sequences import Sequence
 from het_ros.evaluation.summary import Scored
 
@@ -43,7 +44,11 @@ def strips(
 def _first_runs(scored: Listing[Scored], sequence: str, ranked: Listing[str]) -> dict[str, Scored]:
     runs: dict[str, Scored] = {}
     for s in scored:
-        if s.run.sequence == sequence and s.run.first == 0 and s.run.tracker not in runs:
+        if (
+            s.run.sequence == sequence
+            and s.run.rows == FROM_THE_START
+            and s.run.tracker not in runs
+        ):
             runs[s.run.tracker] = s
     return {name: runs[name] for name in ranked if name in runs}
 

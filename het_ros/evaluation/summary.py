@@ -36,7 +36,7 @@ class Scored:
 def score_runs(runs: Iterable[Run], sequences: Listing[Sequence]) -> list[Scored]:
     """Score every run against the truth of its sequence."""
     truth = {sequence.name: sequence.truth for sequence in sequences}
-    return [Scored(run, score(run.track.boxes, truth[run.sequence][run.first :])) for run in runs]
+    return [Scored(run, score(run.track.boxes, truth[run.sequence][run.rows])) for run in runs]
 
 
 def summarise(plan: Plan, scored: Listing[Scored], timing: Timing) -> dict[str, Any]:

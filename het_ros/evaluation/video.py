@@ -13,7 +13,7 @@ import numpy as np
 from tqdm import tqdm
 
 from het_ros.evaluation.drawing import Colour, Image, draw_boxes, draw_label
-from het_ros.evaluation.runs import Run
+from het_ros.evaluation.runs import FROM_THE_START, Run
 from het_ros.evaluation.sequences import Sequence
 
 SMALL = 480  # narrower images are enlarged twice, px
@@ -32,7 +32,7 @@ def write_videos(
     for sequence in tqdm(sequences, unit="video", disable=quiet):
         own: dict[str, Run] = {}
         for run in runs:
-            if run.sequence == sequence.name and run.first == 0:
+            if run.sequence == sequence.name and run.rows == FROM_THE_START:
                 own.setdefault(run.tracker, run)
         file = out / f"{sequence.name}.mp4"
         encode(annotated(sequence, own, palette), sequence.frames.rate, file)

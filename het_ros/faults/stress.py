@@ -86,7 +86,7 @@ def _row(name: str, sequences: list[Sequence], camera: float | None, load: int) 
 
 def _with_truth(runs: list[Run], sequences: list[Sequence]) -> list[tuple[Run, Any]]:
     truths = {sequence.name: sequence.truth for sequence in sequences}
-    return [(run, truths[run.sequence][run.first :]) for run in runs]
+    return [(run, truths[run.sequence][run.rows]) for run in runs]
 
 
 def table(rows: list[dict[str, Any]]) -> str:

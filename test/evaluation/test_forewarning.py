@@ -16,7 +16,7 @@ def pair(boxes: str, scores: list[float], absent: tuple[int, ...] = ()):
     track.boxes[:] = [HERE if letter == "r" else AWAY for letter in boxes]
     track.scores[:] = scores
     truth = np.array([NAN if i in absent else HERE for i in range(len(boxes))], float)
-    return Run("x", "street", 0, "ope", 0, track), truth
+    return Run("x", "street", 0, "ope", slice(0, None), track), truth
 
 
 def scores(count: int, low: range) -> list[float]:

@@ -108,14 +108,14 @@ def test_a_restart_gives_the_tracker_images_and_start_boxes_only(moving):
     assert len(seen) == len(moving.frames)
 
 
-@pytest.mark.parametrize("protocol", ["ope", "tre", "sre", "realtime"])
+@pytest.mark.parametrize("protocol", ["ope", "tre", "sre", "passes", "realtime"])
 def test_jobs_hold_no_truth_but_their_own_start(protocol, moving):
     tracker = spec("identity", Identity)
-    for job, first in Plan([tracker], [moving], protocol).jobs():
+    for job, rows in Plan([tracker], [moving], protocol).jobs():
         assert job.referee is None
-        assert job.box == first_box(moving) or protocol in ("tre", "sre")
+        assert job.box == first_box(moving) or protocol in ("tre", "sre", "passes")
         spy = Spy(moving.truth)
-        others = [r for r in spy.reachable(job, 4) if tuple(r) != tuple(moving.truth[first])]
+        others = [r for r in spy.reachable(job, 4) if tuple(r) != tuple(moving.truth[rows][0])]
         assert others == []
 
 
@@ -126,6 +126,29 @@ def test_tre_starts_20_times_at_frames_that_have_a_box(tmp_path):
     assert [s.first for s in starts[:6]] == [0, 2, 4, 6, 12, 14]
     assert len(starts) == 18, "starts that fall together count once"
     assert all(sequence.visible[s.first] for s in starts)
+
+
+def test_passes_are_the_same_frames_in_five_orders(moving):
+    starts = protocols.starts("passes", moving)
+    rows = [list(range(12)[start.rows]) for start in starts]
+    assert rows == [
+        list(range(12)),
+        list(range(11, -1, -1)),
+        list(range(4, 12)),
+        list(range(7, -1, -1)),
+        list(range(0, 12, 2)),
+    ]
+    for start, taken in zip(starts, rows, strict=True):
+        assert start.box == protocols.true_box(moving, taken[0])
+        files = [moving.frames.files[i] for i in taken]
+        assert list(moving.frames.taken(start.rows).files) == files
+
+
+def test_passes_start_where_the_target_is_in_sight(tmp_path):
+    boxes = [None if i in (4, 7, 11) else (5, 5, 10, 10) for i in range(12)]
+    boxes[0] = (5, 5, 10, 10)
+    starts = protocols.starts("passes", write_sequence(tmp_path / "gap", boxes))
+    assert [(s.first, s.step) for s in starts] == [(0, 1), (10, -1), (5, 1), (6, -1), (0, 2)]
 
 
 def test_tre_on_a_short_sequence_starts_at_every_frame(moving):
@@ -203,7 +226,7 @@ def test_restarts_count_failures_and_leave_out_the_burn_in(tmp_path):
     track = follow_restarting(Fails([]), sequence.frames, sequence.truth)
     assert track.failures == [15, 35]
     assert track.starts == [0, 20]
-    run = Run("x", "still", 0, "restart", 0, track)
+    run = Run("x", "still", 0, "restart", slice(0, None), track)
     result = summarise([run], {"still": sequence.truth})
     assert result["accuracy"] == pytest.approx(0.5)
     assert result["failures"] == 2

@@ -29,7 +29,7 @@ def pair(states="", boxes=None, truth=None, scores=None, covariances=None):
     if covariances is not None:
         track.covariances[:] = covariances
     true = np.array([HERE] * n if truth is None else truth, float)
-    return Run("x", "s", 0, "ope", 0, track), true
+    return Run("x", "s", 0, "ope", slice(0, None), track), true
 
 
 def test_the_state_against_an_absence():
