@@ -6,7 +6,7 @@ from __future__ import annotations
 
 import time
 import traceback
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
@@ -37,7 +37,7 @@ class Start:
     variant: str
     first: int
     box: Box
-    step: int = 1
+    step: int = field(default=1, repr=False)  # the variant says it: results keep their keys
 
     @property
     def rows(self) -> slice:

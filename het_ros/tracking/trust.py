@@ -22,6 +22,9 @@ _TWIN_TEMPLATE = 0.75  # share of the score's mean that makes a rival a twin
 _TWIN_TIME = 1.2  # s after a twin was beside the target in which it may be either
 _FAR = 0.7  # target sides from the prediction; a target that comes back there ...
 _RETURN_FAR = 0.85  # ... must be recognised with this probability
+_AWAY = 5  # frames hidden, from which on it is a return when somebody is seen again
+_PROBATION = 1.0  # s after a return in which only who ...
+_AS_BEFORE = 0.85  # ... is this much like the target (share of the score's mean) is learnt
 _RETURN_RESIZED = 0.9  # and one that comes back at another size with this
 _ANY_RIVAL = 10.0  # shares beyond this say no more
 _YOUNG = 10  # frames in which the model has seen too little to be ambiguous about a rival
@@ -84,6 +87,7 @@ class Trust:
         self._frames = 0
         self._doubted_for = 0.0
         self._since_twin = math.inf
+        self._since_return = math.inf
         self.hidden_frames = 0
         self.hidden_for = 0.0
         self.state = State.TRACKING
@@ -116,6 +120,8 @@ class Trust:
             self.state = State.LOST if lost else State.COASTING
             self.score = 0.0 if lost else min(self.score, 0.5)
             return verdict
+        returned = self.hidden_frames >= _AWAY
+        self._since_return = 0.0 if returned else self._since_return + dt
         self.hidden_for = 0.0
         self.hidden_frames = 0
         self.state = State.TRACKING
@@ -187,7 +193,11 @@ class Trust:
         covered = colour < limits.learn_colour and template < 1
         # Somebody who looks the same is next to the target: it may be either.
         twin = rival > limits.twin
-        return Verdict.DOUBTED if old and (ambiguous or covered or twin) else Verdict.SEEN
+        # Who is just back may be the post that hid the target: what it looks like is not learnt.
+        just_back = self.hidden_frames >= _AWAY or self._since_return < _PROBATION
+        stranger = just_back and template < _AS_BEFORE
+        doubted = ambiguous or covered or twin or stranger
+        return Verdict.DOUBTED if old and doubted else Verdict.SEEN
 
 
 def probability(template: float, mean: float, colour: float, rival: float) -> float:

@@ -7,6 +7,7 @@ import signal
 from pathlib import Path
 
 import av
+import pytest
 
 from het_ros import State
 from het_ros.tools import replay as replay_module
@@ -39,8 +40,9 @@ def test_a_replay_leaves_a_complete_results_folder(crossing_bag, tmp_path, capsy
     assert (tmp_path / "out" / "track.png").stat().st_size > 50_000
 
 
-def test_who_is_followed_in_the_shipped_bag_is_followed_past_the_column(tmp_path):
-    assert main([str(SHIPPED), "--out", str(tmp_path)]) == 0
+@pytest.mark.parametrize("seed", [0, 1, 2])
+def test_who_is_followed_in_the_shipped_bag_is_followed_past_the_column(tmp_path, seed):
+    assert main([str(SHIPPED), "--out", str(tmp_path), "-p", f"seed:={seed}"]) == 0
     with BagReader(SHIPPED) as bag:
         truth = bag.truth()
     rows = read_csv(tmp_path / "track.csv")

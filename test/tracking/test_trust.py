@@ -239,3 +239,30 @@ def test_light_that_changed_for_good_is_the_light_in_the_end():
     assert trust.state is State.TRACKING
     assert Verdict.HIDDEN not in verdicts
     assert verdicts[-20:] == [Verdict.SEEN] * 20
+
+
+def test_who_is_just_back_is_learnt_at_once_only_if_it_is_as_before():
+    """The post that hid the target may look a little like it."""
+    for back, verdict in ((BACK, Verdict.DOUBTED), ({**BACK, "template": 0.9}, Verdict.SEEN)):
+        trust = grown_up()
+        for _ in range(10):
+            trust.judge(GONE, 0.05)
+        assert trust.judge(Evidence(**back), 0.05) is verdict
+        assert trust.judge(Evidence(**back), 0.05) is verdict
+        assert trust.state is State.TRACKING
+
+
+def test_after_a_moment_who_is_back_is_learnt_as_it_is():
+    trust = grown_up()
+    for _ in range(10):
+        trust.judge(GONE, 0.05)
+    verdicts = [trust.judge(Evidence(**BACK), 0.05) for _ in range(40)]
+    assert verdicts[:5] == [Verdict.DOUBTED] * 5
+    assert verdicts[-20:] == [Verdict.SEEN] * 20
+
+
+def test_a_frame_or_two_away_is_no_return():
+    trust = grown_up()
+    for _ in range(3):
+        trust.judge(GONE, 0.05)
+    assert trust.judge(Evidence(**BACK), 0.05) is Verdict.SEEN
