@@ -23,7 +23,8 @@ _TWIN_TIME = 1.2  # s after a twin was beside the target in which it may be eith
 _FAR = 0.7  # target sides from the prediction; a target that comes back there ...
 _RETURN_FAR = 0.85  # ... must be recognised with this probability
 _AWAY = 5  # frames hidden, from which on it is a return when somebody is seen again
-_PROBATION = 1.0  # s after a return in which only who ...
+_UNSURE = 0.85  # probability of being recognised below which a return is on probation, ...
+_PROBATION = 1.0  # ... s in which only who ...
 _AS_BEFORE = 0.85  # ... is this much like the target (share of the score's mean) is learnt
 _RETURN_RESIZED = 0.9  # and one that comes back at another size with this
 _ANY_RIVAL = 10.0  # shares beyond this say no more
@@ -120,8 +121,8 @@ class Trust:
             self.state = State.LOST if lost else State.COASTING
             self.score = 0.0 if lost else min(self.score, 0.5)
             return verdict
-        returned = self.hidden_frames >= _AWAY
-        self._since_return = 0.0 if returned else self._since_return + dt
+        unsure = self._returns_unsure(relative)
+        self._since_return = 0.0 if unsure else self._since_return + dt
         self.hidden_for = 0.0
         self.hidden_frames = 0
         self.state = State.TRACKING
@@ -176,6 +177,10 @@ class Trust:
         alike = relative.template * relative.colour >= limits.hidden
         return alike and relative.colour >= _RETURN_COLOUR and recognised(relative) >= least
 
+    def _returns_unsure(self, relative: Evidence) -> bool:
+        """Whether this is a return of somebody who is not recognised for sure."""
+        return self.hidden_frames >= _AWAY and recognised(relative) < _UNSURE
+
     def _verdict(self, relative: Evidence) -> Verdict:
         """The rules."""
         limits = self._limits
@@ -193,9 +198,9 @@ class Trust:
         covered = colour < limits.learn_colour and template < 1
         # Somebody who looks the same is next to the target: it may be either.
         twin = rival > limits.twin
-        # Who is just back may be the post that hid the target: what it looks like is not learnt.
-        just_back = self.hidden_frames >= _AWAY or self._since_return < _PROBATION
-        stranger = just_back and template < _AS_BEFORE
+        # Who is back may be the post that hid the target: what it looks like is not learnt.
+        probation = self._returns_unsure(relative) or self._since_return < _PROBATION
+        stranger = probation and template < _AS_BEFORE
         doubted = ambiguous or covered or twin or stranger
         return Verdict.DOUBTED if old and doubted else Verdict.SEEN
 
