@@ -22,7 +22,8 @@ WORKSPACE := $(ROS); source install/setup.bash
 PEERS_SPACE := $(CLEAN); source $(PEERS)/bin/activate; export AMENT_PREFIX_PATH="$$VIRTUAL_ENV"; \
 	source install/setup.bash
 
-.PHONY: help setup build run test test-oldest fuzz faults soak evaluate bench docs format clean
+.PHONY: help setup build run test test-oldest fuzz faults soak evaluate scenes bench docs format \
+	clean
 
 help: ## What there is to make
 	@grep -E '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:[^#]*## /\t/' | expand -t 14
@@ -30,6 +31,7 @@ help: ## What there is to make
 	@echo 'make run [VIDEO=file INIT=x,y,w,h | SEQUENCE=folder] [OUT=out/run]'
 	@echo 'make evaluate DATA=folder [OUT=out/evaluate] [TRACKERS=het,csrt] [SEEDS=3]'
 	@echo '     [PROTOCOL=ope|tre|sre|passes|realtime|restart] [SEQUENCES=a,b] [SCHEDULER=tcp://host:8786]'
+	@echo 'make scenes [OUT=out/scenes] [SCENES="--seeds 20 --stories lookalike_crosses"]'
 	@echo 'make bench [OUT=out/bench] [DATA=folder]'
 	@echo 'make fuzz [MINUTES=10] [OUT=out/fuzz]'
 	@echo 'make soak [MINUTES=60] [OUT=out/soak] [SOAK="--size 1280x720 -p seed:=3"]'
@@ -118,6 +120,10 @@ evaluate: OUT ?= out/evaluate
 evaluate: $(BUILT) $(PEERS)/.ready ## Score this tracker and OpenCV's on DATA=folder
 	@test -n '$(DATA)' || { echo 'make evaluate DATA=folder: name a folder of sequences (OTB or VOT layout)'; exit 2; }
 	@$(PEERS_SPACE); python -m het_ros.evaluation.cli --data '$(DATA)' --out '$(OUT)' $(PEER_OPTIONS) $(EVALUATE)
+
+scenes: OUT ?= out/scenes
+scenes: $(BUILT) ## Is it honest? Rendered stories with exact truth: hidden, gone, look-alikes
+	@$(WORKSPACE); python -m het_ros.tools.scenes --out '$(OUT)/scenes.json' $(SCENES)
 
 bench: OUT ?= out/bench
 bench: $(BUILT) $(PEERS)/.ready ## Speed of the core and of the node, as ratios to the peers
