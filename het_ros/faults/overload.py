@@ -3,7 +3,7 @@
 """More frames than the installed tracker can process: latency, drops, memory.
 
 First the camera sends as fast as it goes, which tells how many frames a second the tracker can
-process; then three times as many. Newest wins: a frame that is processed was taken when it was
+process; then more than three times as many. Newest wins: a frame that is processed was taken when it was
 the newest, so it is answered within two frame times of processing, and all others are counted as
 dropped on /diagnostics.
 """

@@ -8,6 +8,8 @@ believed only where the picture fits better there than where it was or where it 
 
 from __future__ import annotations
 
+from functools import cache
+
 import cv2
 import numpy as np
 from numpy.typing import NDArray
@@ -77,7 +79,7 @@ def registered(before: Image, now: Image, expected: Floats) -> Floats:
         expected: (x, y), px: taken instead where the picture itself does not tell, or (0, 0) if
             that fits better.
     """
-    window = cv2.createHanningWindow(now.shape[::-1], cv2.CV_32F)
+    window = _taper(now.shape)
     # Copies: OpenCV multiplies what it is given by the window, in place.
     one, other = before.astype(np.float32), now.astype(np.float32)
     measured = np.array(cv2.phaseCorrelate(one, other, window)[0])
@@ -90,6 +92,12 @@ def registered(before: Image, now: Image, expected: Floats) -> Floats:
     if _left_over(before, now, measured) < _BETTER * min(by_expected, by_still):
         return measured
     return expected if by_expected < by_still else still
+
+
+@cache
+def _taper(shape: tuple[int, ...]) -> NDArray[np.float32]:
+    """Hann window of a thumbnail's shape (h, w): the same in every frame of a stream."""
+    return np.asarray(cv2.createHanningWindow(shape[::-1], cv2.CV_32F), np.float32)
 
 
 def _left_over(before: Image, now: Image, way: Floats) -> float:
