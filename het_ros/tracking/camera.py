@@ -59,13 +59,20 @@ class CameraMotion:
 def thumbnail(image: Image) -> Image:
     """A gray miniature (h, w) uint8 whose longer side is 128 px, or the image's if it has less.
 
-    Of large images only every k-th px is read, so that it costs the same for all.
+    Of large images only every k-th px is read, so that it costs the same for all. What is left is
+    halved first, which OpenCV does many times faster than shrinking by any other ratio.
     """
     plane = image if image.ndim == 2 else image[..., 1]
-    step = max(1, max(plane.shape) // (2 * _SIDE))
-    plane = np.ascontiguousarray(plane[::step, ::step])
     ratio = min(1.0, _SIDE / max(plane.shape))
     height, width = (max(1, round(side * ratio)) for side in plane.shape)
+    step = max(1, max(plane.shape) // (2 * _SIDE))
+    plane = np.ascontiguousarray(plane[::step, ::step])
+    if min(plane.shape) > 1 and max(plane.shape) >= 2 * _SIDE:
+        rows, columns = (side // 2 for side in plane.shape)
+        halved = np.ascontiguousarray(plane[: 2 * rows, : 2 * columns])
+        plane = np.asarray(
+            cv2.resize(halved, (columns, rows), interpolation=cv2.INTER_AREA), np.uint8
+        )
     small = cv2.resize(plane, (width, height), interpolation=cv2.INTER_AREA)
     return np.asarray(small, np.uint8)
 

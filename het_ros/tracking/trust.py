@@ -33,6 +33,9 @@ _NEVER_BELOW = 0.2  # relative template score that nothing can excuse
 _LIKELY = 0.75  # least score of a place that is clearly the target's, ...
 _CLEAR = 0.6  # ... and the most that the best other place has of its template score
 _BARELY = 0.65  # share of ``hidden`` below which not even such a place is followed
+_IN_PLACE = 0.3  # target sides from the prediction: who is found there ...
+_KNOWN_THERE = 0.8  # ... and recognised with this probability is not hidden, ...
+_UNCLEAR_TIME = 0.5  # ... unless nothing else has spoken for it for so long, s
 _SURE = 100.0  # a logit beyond which nothing changes but that exp() overflows
 # Logistic regression of "IoU over 0.5" on the evidence, over the frames of many real tracks.
 _BIAS, _BY_TEMPLATE, _BY_MEAN, _BY_COLOUR, _BY_RIVAL = -8.1, 4.0, 9.2, 1.0, -2.7
@@ -87,6 +90,7 @@ class Trust:
         self._colour: float | None = None
         self._frames = 0
         self._doubted_for = 0.0
+        self._unclear_for = 0.0
         self._since_twin = math.inf
         self._since_return = math.inf
         self.hidden_frames = 0
@@ -110,6 +114,8 @@ class Trust:
         if witnessed and (self.state is State.TRACKING or self._is_back(relative)):
             verdict = self._verdict(relative)
         self._doubted_for = self._doubted_for + dt if verdict is Verdict.DOUBTED else 0.0
+        plain = verdict is not Verdict.HIDDEN and self._is_plain(relative)
+        self._unclear_for = 0.0 if plain else self._unclear_for + dt
         if self._doubted_for > _LONGEST_DOUBT:
             # Light that changed for good is learnt; what covers the target is not followed.
             verdict = Verdict.SEEN if self._is_clear(relative) else Verdict.HIDDEN
@@ -160,6 +166,18 @@ class Trust:
         """Whether it is likely the target and no other place looks nearly as good."""
         return relative.rival <= _CLEAR and self._score(relative) >= _LIKELY
 
+    def _is_plain(self, relative: Evidence) -> bool:
+        """Whether shape and colours speak for it, or it is clearly the likeliest place."""
+        alike = relative.template * relative.colour >= self._limits.hidden
+        return (alike and relative.colour >= _RETURN_COLOUR) or self._is_clear(relative)
+
+    def _is_in_place(self, relative: Evidence) -> bool:
+        """Whether it is where it must be and known there, though blur or light take much away."""
+        barely = relative.template * relative.colour >= _BARELY * self._limits.hidden
+        here = relative.moved <= _IN_PLACE and self._unclear_for <= _UNCLEAR_TIME
+        known = recognised(relative) >= _KNOWN_THERE or self._is_clear(relative)
+        return barely and here and known
+
     def _rate(self, relative: Evidence, dt: float) -> float:
         """The score of a frame; beside a twin, and for a while after it, nobody is sure."""
         score = self._score(relative)
@@ -171,6 +189,8 @@ class Trust:
     def _is_back(self, relative: Evidence) -> bool:
         """Whether a hidden target has come back; farther off only on stronger evidence."""
         limits = self._limits
+        if self._is_in_place(relative):
+            return True
         least = limits.return_probability
         if relative.moved > _FAR:
             least = max(least, _RETURN_FAR)
@@ -192,7 +212,8 @@ class Trust:
         if old and alike < limits.hidden:
             # Where the light changes the colours do too, but nothing else looks like the target.
             clear = alike >= _BARELY * limits.hidden and self._is_clear(relative)
-            return Verdict.DOUBTED if clear else Verdict.HIDDEN
+            there = clear or self._is_in_place(relative)
+            return Verdict.DOUBTED if there else Verdict.HIDDEN
         ambiguous = template < limits.doubt_template and rival > limits.doubt_rival
         # A post that comes in from the side takes the colours away first.
         covered = colour < limits.learn_colour and template < 1

@@ -85,8 +85,8 @@ def test_hidden_frames_are_counted_until_the_target_is_back():
 @pytest.mark.parametrize(
     ("evidence", "back"),
     [
-        (Evidence(0.45, 0.8, 0.1), False),  # too little is left of it
-        (Evidence(1.0, 0.4, 0.1), False),  # its colours are not back
+        (Evidence(0.3, 0.8, 0.1), False),  # too little is left of it
+        (Evidence(1.0, 0.4, 0.1, moved=0.4), False),  # its colours are not back
         (Evidence(0.6, 0.8, 0.1), True),  # where it was, and nothing rivals it
         (Evidence(0.8, 0.8, 0.65, moved=1.0, away=1.0), False),  # anybody over there
         (Evidence(0.8, 0.8, 0.65, moved=0.5, away=1.0), True),
@@ -103,6 +103,39 @@ def test_back_only_on_strong_evidence(hidden, evidence, back):
     assert trust.state is away
     trust.judge(evidence, 0.1)
     assert trust.state is (State.TRACKING if back else away)
+
+
+# Less than ``hidden`` is left of shape and colours together, in blur, but it is known all the same.
+BLURRED = Evidence(0.55, 0.6, 0.5)
+
+
+@pytest.mark.parametrize(
+    ("evidence", "verdict"),
+    [
+        (BLURRED, Verdict.DOUBTED),  # where it must be
+        (replace(BLURRED, moved=0.4), Verdict.HIDDEN),  # it would have to have jumped
+        (replace(BLURRED, rival=0.9), Verdict.HIDDEN),  # another place looks as much like it
+        (replace(BLURRED, template=0.35), Verdict.HIDDEN),  # hardly anything is left
+    ],
+    ids=str,
+)
+def test_who_is_known_in_its_place_is_not_hidden(evidence, verdict):
+    assert grown_up().judge(evidence, 1 / 30) is verdict
+    just_gone = grown_up()
+    just_gone.judge(GONE, 1 / 30)
+    assert just_gone.judge(evidence, 1 / 30) is verdict
+
+
+@pytest.mark.parametrize("dt", [1 / 30, 1 / 15, 0.1])
+def test_that_is_believed_for_half_a_second_only(dt):
+    trust, followed = grown_up(dt=dt), 0.0
+    while trust.judge(BLURRED, dt) is Verdict.DOUBTED:
+        followed += dt
+        assert followed < 0.5 + 2 * dt
+    assert followed == pytest.approx(0.5, abs=1.5 * dt)
+    for _ in range(10):
+        assert trust.judge(BLURRED, dt) is Verdict.HIDDEN
+    assert trust.judge(GOOD, dt) is not Verdict.HIDDEN
 
 
 def test_weak_evidence_that_would_do_while_tracking_does_not_bring_it_back():
