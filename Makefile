@@ -81,13 +81,17 @@ run: OUT ?= out/run
 run: $(BUILT) ## Follow the target of the recorded bag, or of your own footage; look into out/run
 	@$(WORKSPACE); python -m het_ros.tools.run --out '$(OUT)' $(RUN_OPTIONS)
 
+# Tests of many processes and of real time do not bear company; the others run side by side.
+SIDE_BY_SIDE := test/tracking test/scene test/evaluation test/test_copyright.py
+
 test: $(BUILT) ## Style, types, import contracts, package.xml, all tests
 	$(WORKSPACE); ruff check .
 	$(WORKSPACE); ruff format --check --quiet .
 	$(WORKSPACE); mypy
 	$(WORKSPACE); lint-imports
 	$(WORKSPACE); python -c 'from catkin_pkg.package import parse_package as p; print("package.xml is valid:", p("package.xml", warnings=[]))'
-	$(WORKSPACE); python -m pytest $(PYTEST)
+	$(WORKSPACE); python -m pytest -n logical --dist loadfile $(SIDE_BY_SIDE) $(PYTEST)
+	$(WORKSPACE); python -m pytest $(addprefix --ignore=,$(SIDE_BY_SIDE)) $(PYTEST)
 
 OLDEST_TESTS := test/tracking test/fuzz/test_conversions.py test/fuzz/test_core.py \
 	$(addprefix test/ros/test_,images.py image_size.py messages.py optics.py depth.py stamps.py \

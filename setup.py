@@ -52,6 +52,7 @@ EXTRAS = {
     "build": ["colcon-common-extensions>=0.3", "setuptools>=65,<80"],
     "test": [
         "pytest>=8",
+        "pytest-xdist>=3",  # the tests without ROS on all processors
         "hypothesis>=6.80",
         "ruff>=0.6",
         "mypy>=1.10",

@@ -11,23 +11,20 @@ import itertools
 import os
 import subprocess
 import sys
-import time
 from pathlib import Path
 
 import hypothesis
 import numpy as np
 import pytest
+from graph import EXECUTABLES, PATIENCE, ROOT, Graph
 from moving_target import FIRST_BOX, moving_target
 
 # A busy machine is no failure: no limit of time for an example.
 hypothesis.settings.register_profile("patient", deadline=None)
 hypothesis.settings.load_profile("patient")
 
-ROOT = Path(__file__).parents[1]
-EXECUTABLES = ROOT / "install" / "het_ros" / "lib" / "het_ros"
 # Fast DDS reads it once a process: it must be set before the first node.
 os.environ.setdefault("FASTRTPS_DEFAULT_PROFILES_FILE", str(ROOT / "config" / "fastdds_shm.xml"))
-PATIENCE = 60  # s: how long something that must happen may take on a busy machine
 
 
 @pytest.fixture(scope="session")
@@ -43,53 +40,6 @@ def sequences() -> Path:
 def made_footage() -> tuple[list[np.ndarray], tuple[float, float, float, float]]:
     """40 frames of the moving target; its first box."""
     return moving_target(40), FIRST_BOX
-
-
-class Graph:
-    """Nodes of one context, spun in this thread; invisible to the rest of the machine."""
-
-    def __init__(self) -> None:
-        import rclpy
-        from rclpy.executors import SingleThreadedExecutor
-
-        self.context = rclpy.Context()
-        rclpy.init(context=self.context)
-        self.executor = SingleThreadedExecutor(context=self.context)
-        self.nodes: list = []
-
-    def add(self, node):
-        """Take a node made with ``context=graph.context``; it is destroyed with the graph."""
-        self.executor.add_node(node)
-        return self.keep(node)
-
-    def keep(self, node):
-        """Destroy a node with the graph, but do not spin it."""
-        self.nodes.append(node)
-        return node
-
-    def spin_until(self, happened, what: str = "what the test waits for") -> None:
-        """Spin until ``happened()`` is true; fail when it does not happen at all."""
-        assert self.spins_until(happened, PATIENCE), f"did not happen: {what}"
-
-    def spins_until(self, happened, patience: float) -> bool:
-        """Spin until ``happened()`` is true or for ``patience`` s; whether it happened."""
-        end = time.monotonic() + patience
-        while not happened():
-            if time.monotonic() >= end:
-                return False
-            self.executor.spin_once(timeout_sec=0.02)
-        return True
-
-    def settle(self, rounds: int = 5) -> None:
-        """Let everything that is on its way arrive."""
-        for _ in range(rounds):
-            self.executor.spin_once(timeout_sec=0.02)
-
-    def close(self) -> None:
-        self.executor.shutdown()
-        for node in self.nodes:
-            node.destroy_node()
-        self.context.try_shutdown()
 
 
 @pytest.fixture

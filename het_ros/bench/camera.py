@@ -113,7 +113,8 @@ class Camera(Node):
             self._publish(i)
             if i == 0:
                 self.start(box)
-            due = max(due + 1 / self.rate, time.perf_counter())
+            # A frame that is late does not make all later ones late, as with a clock of its own.
+            due = max(due + 1 / self.rate, time.perf_counter() - 1 / self.rate)
             self._spin_until(due, spin)
 
     def finish(self, spin: Spin) -> None:
@@ -131,7 +132,7 @@ class Camera(Node):
         self._images.publish(message)
 
     def _spin_until(self, end: float, spin: Spin) -> None:
-        """Serve callbacks until then; also of a camera that is late, whose rate falls instead."""
+        """Serve callbacks until then; also of a camera that is late."""
         for _ in range(CALLBACKS):
             spin(0.0)
         while (left := end - time.perf_counter()) > 0:

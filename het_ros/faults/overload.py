@@ -34,7 +34,7 @@ from het_ros.tools.tracker_arguments import parameter_arguments
 from het_ros.tools.tracker_process import TrackerProcess, find_tracker, own_graph
 from het_ros.tools.transport import use_profile
 
-TIMES = 3.4  # told; the camera manages about nine tenths of it
+TIMES = 3.0  # of what the tracker can process
 LOOKS = 5
 FASTEST = 600.0  # frames/s to find out what the tracker can
 PATIENCE = 60.0  # s, for camera and tracker to find each other

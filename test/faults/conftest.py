@@ -7,7 +7,7 @@ from __future__ import annotations
 import os
 
 import pytest
-from conftest import EXECUTABLES, Graph
+from graph import EXECUTABLES, Graph
 
 from het_ros.tools.footage import open_footage
 from het_ros.tools.make_bag import make_bag

@@ -97,8 +97,9 @@ def test_a_flood_of_calls(lockstep, steady_memory):
 
     flood(lockstep, call)
     assert np.mean(lockstep.overlaps(lockstep.steady(20))) > 0.5
-    # A service keeps the newest 10 requests that wait: the others are not answered.
-    lockstep.graph.spin_until(lambda: sum(a.done() for a in answers) >= 100, "answers")
+    # A service keeps the newest 10 requests that wait: how many more are answered is up to the
+    # machine.
+    lockstep.graph.spin_until(lambda: sum(a.done() for a in answers) >= 10, "answers")
     lockstep.graph.settle()
     for client, request in (
         (enable, SetBool.Request(data=True)),

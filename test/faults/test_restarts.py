@@ -13,7 +13,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from conftest import EXECUTABLES
+from graph import EXECUTABLES
 from ros.streams import Camera, box_message, image_message
 
 from het_ros.faults.disturb import SECOND, steady

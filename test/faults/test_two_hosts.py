@@ -10,7 +10,7 @@ import subprocess
 import sys
 
 import pytest
-from conftest import PATIENCE
+from graph import PATIENCE
 
 from het_ros.tools.two_hosts import namespaces
 

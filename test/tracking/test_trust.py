@@ -105,7 +105,7 @@ def test_back_only_on_strong_evidence(hidden, evidence, back):
     assert trust.state is (State.TRACKING if back else away)
 
 
-# Less than ``hidden`` is left of shape and colours together, in blur, but it is known all the same.
+# In blur: less than ``hidden`` is left of shape and colours together, but it is recognised.
 BLURRED = Evidence(0.55, 0.6, 0.5)
 
 
