@@ -6,7 +6,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,6 +20,7 @@ from het_ros.tracking.config import TrackerConfig
 from het_ros.tracking.cost import check_cost
 from het_ros.tracking.estimate import Estimate, Patch, State
 from het_ros.tracking.flow_prior import FlowPrior
+from het_ros.tracking.frame import Floats, Frame, Image, Measurement
 from het_ros.tracking.inertia import Inertia
 from het_ros.tracking.layers import (
     base_ensembles,
@@ -28,59 +28,19 @@ from het_ros.tracking.layers import (
     compressive_features,
     grid,
     motion_model,
-    scale_filter,
     whole,
 )
 from het_ros.tracking.response import Peak, find_peak
 from het_ros.tracking.search import other_size, search_centre
+from het_ros.tracking.size import Size
 from het_ros.tracking.sub_patches import draw_sub_patches, to_be_updated
 from het_ros.tracking.trust import Evidence, Trust, Verdict
 from het_ros.tracking.window import Window, cut_window
 
-Image = NDArray[np.uint8]
-Floats = NDArray[np.float64]
 Witness = Callable[[Box], bool]
 
 # A rival is a place of the target at least this part of its side away from the best one.
 _RIVAL_APART = 0.35
-_SIZES_KNOWN = 15  # frames after which the scale filter has seen enough to be followed
-_SMALLEST_SIDE = 3.0  # px: below this a target is not shrunk any more
-
-
-@dataclass(frozen=True)
-class Frame:
-    """One frame's search window and what all layers read of it.
-
-    Attributes:
-        window: the pixels, with its places counted in cells.
-        planes: C channels, (H, W) uint8.
-        features: (m, rows, columns), maps of the compressive features.
-        growth: size at which the target is looked for, over that of its first box.
-    """
-
-    window: Window
-    planes: tuple[Image, ...]
-    features: Features
-    growth: float
-
-
-@dataclass(frozen=True)
-class Measurement:
-    """What bottom and middle layer make of a frame.
-
-    Attributes:
-        corner: y_COM, the target's corner, cells of the window.
-        patch_corners: p (Q, 2), where the sub-patches were found, cells.
-        omega: (Q,) weights of the sub-patches.
-        evidence: raw evidence for the place, or None where nothing judges it.
-        scores: (Q, rows, columns) of the base ensembles.
-    """
-
-    corner: Floats
-    patch_corners: Floats
-    omega: Floats
-    evidence: Evidence | None
-    scores: Features
 
 
 class Target:
@@ -97,9 +57,6 @@ class Target:
 
     def __init__(self, config: TrackerConfig, image: Image, box: Box) -> None:
         self._config = config
-        self._first_size = np.array([box.w, box.h])
-        self._growth = 1.0
-        self._sized_frames = 0
         rng = np.random.default_rng(config.seed)
         self._cells, self._unit = grid(config, box)
         check_cost(config, self._cells)
@@ -113,13 +70,13 @@ class Target:
         )
         self._ensembles = base_ensembles(config, self._cells)
         self._colour = colour_model(config, self._cells)
-        self._scale = scale_filter(config, self._cells)
+        self._size = Size(config, box, self._cells)
         self._trust = Trust(config) if config.trust else None
         self._motion = motion_model(config, box)
         self._flow = FlowPrior(config, self._cells)
         self._seen_at = np.array(box.centre)
         self._inertia = Inertia(image, self._seen_at) if config.camera_motion else None
-        frame = self._look(image, self._seen_at, self._growth)
+        frame = self._look(image, self._seen_at, 1.0)
         self._learn(frame, self._corner_in(frame.window), np.ones(config.sub_patches, bool), 1.0)
 
     def follow(self, image: Image, dt: float, witness: Witness | None = None) -> Estimate:
@@ -134,11 +91,11 @@ class Target:
         step = self._motion.step(dt)
         self._go_with_camera(image, step)
         frame, found = self._search(image)
-        centre = frame.window.to_image(found.corner + np.array(self._cells) / 2)
+        centre = frame.window.to_image(self._centre_of(found.corner))
         verdict = Verdict.SEEN
         hidden = bool(self._trust and self._trust.hidden_frames)
         if self._trust and found.evidence:
-            witnessed = witness is None or witness(self._box_at(centre, frame.growth))
+            witnessed = witness is None or witness(self._size.box(centre, frame.growth))
             verdict = self._trust.judge(found.evidence, step, witnessed)
         if verdict is Verdict.HIDDEN:
             self._motion.coast()
@@ -150,10 +107,10 @@ class Target:
             else:
                 self._motion.correct(centre, float(found.omega.mean()))
             if self._inertia:
-                side = math.sqrt(self.box.area)
+                side = self._size.side(self._size.growth)
                 self._motion.change_velocity(self._inertia.observe(centre, side, step))
             self._seen_at = centre
-            self._growth = frame.growth
+            self._size.growth = frame.growth
         if not self._trust and not self.box.touches_image(image.shape[1], image.shape[0]):
             return self.estimate(0.0, State.LOST)
         score = self._update_model(frame, found, verdict, step)
@@ -168,12 +125,7 @@ class Target:
     @property
     def box(self) -> Box:
         """The target's box by the motion model, px."""
-        return self._box_at(self._motion.centre, self._growth)
-
-    def _box_at(self, centre: Floats, growth: float) -> Box:
-        """A box ``growth`` times as large as the first one, px."""
-        width, height = self._first_size * growth
-        return Box.from_centre(float(centre[0]), float(centre[1]), float(width), float(height))
+        return self._size.box(self._motion.centre)
 
     def estimate(self, score: float, state: State, patches: tuple[Patch, ...] = ()) -> Estimate:
         """What the motion model holds, as an estimate."""
@@ -204,7 +156,7 @@ class Target:
 
     def _look_for(self, image: Image, hidden: int, size: float) -> tuple[Frame, Measurement]:
         """One look at the place that is ``hidden``'s turn, at ``size`` times the present size."""
-        growth = self._growth * size
+        growth = self._size.growth * size
         reach = self._radius * self._unit * growth
         centre = search_centre(hidden, self._motion.centre, self._seen_at, reach)
         frame = self._look(image, centre, growth)
@@ -216,7 +168,7 @@ class Target:
         whole = config.working_side > 0
         margin = math.ceil(self._radius) + (0 if whole else 1)
         unit = self._unit * growth
-        corner = centre - self._first_size * growth / 2 - margin * unit
+        corner = centre - self._size.first * growth / 2 - margin * unit
         width, height = (math.ceil(cells) + 2 * margin for cells in self._cells)
         scale = config.cell / unit
         window = cut_window(
@@ -270,8 +222,8 @@ class Target:
 
     def _evidence(self, frame: Frame, peak: Peak, omega: Floats) -> Evidence:
         """What speaks for a peak; distances in target sides."""
-        centre = frame.window.to_image(peak.corner + np.array(self._cells) / 2)
-        side = frame.growth * math.sqrt(self._first_size.prod())
+        centre = frame.window.to_image(self._centre_of(peak.corner))
+        side = self._size.side(frame.growth)
         return Evidence(
             peak.template,
             peak.colour,
@@ -288,28 +240,16 @@ class Target:
         if self._trust:
             if verdict is Verdict.SEEN:
                 chosen = np.ones(self._config.sub_patches, bool)
-                self._learn(frame, found.corner, chosen, self._resize(frame, found.corner, dt))
+                ratio = self._size.follow(frame.planes, self._centre_of(found.corner), dt)
+                self._learn(frame, found.corner, chosen, ratio)
             return self._trust.score
         target = self._corner_in(frame.window)
         corners = self._sub_patches.corners(target)
         score = self._ensembles.likelihood(frame.features, corners)
         chosen = to_be_updated(scores_at(found.scores, corners))
-        self._learn(frame, target, chosen, self._resize(frame, target, dt))
+        ratio = self._size.follow(frame.planes, self._centre_of(target), dt)
+        self._learn(frame, target, chosen, ratio)
         return score
-
-    def _resize(self, frame: Frame, corner: Floats, dt: float) -> float:
-        """Follow the target's change of size; returns the ratio to the size before."""
-        if self._config.scales == 1:
-            return 1.0
-        ratio = self._scale.change(frame.planes, corner + np.array(self._cells) / 2)
-        self._sized_frames = min(self._sized_frames + 1, _SIZES_KNOWN)
-        known = self._sized_frames / _SIZES_KNOWN
-        fastest = math.exp(self._config.growth_limit * dt * known)
-        ratio = min(max(ratio, 1 / fastest), fastest)
-        least = _SMALLEST_SIDE / float(self._first_size.min())
-        growth = max(self._growth * ratio, min(self._growth, least))
-        ratio, self._growth = growth / self._growth, growth
-        return ratio
 
     def _learn(
         self, frame: Frame, corner: Floats, chosen: NDArray[np.bool_], ratio: float
@@ -320,8 +260,11 @@ class Target:
         if config.colour_weight:
             x, y = corner * config.cell
             self._colour.learn(frame.window.pixels, (float(x), float(y)))
-        if config.scales > 1:
-            self._scale.learn(frame.planes, corner + np.array(self._cells) / 2, ratio)
+        self._size.learn(frame.planes, self._centre_of(corner), ratio)
+
+    def _centre_of(self, corner: Floats) -> Floats:
+        """The centre of a target with its corner there, cells."""
+        return corner + np.array(self._cells) / 2
 
     def _corner_in(self, window: Window) -> Floats:
         """The target's corner by the motion model, cells of the window."""

@@ -1,0 +1,74 @@
+# Copyright 2026 het_ros maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""The target's size: that of its first box, and how much it has grown since."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from het_ros.tracking.box import Box
+from het_ros.tracking.config import TrackerConfig
+from het_ros.tracking.layers import Cells, scale_filter
+from het_ros.tracking.scale import Planes
+
+Floats = NDArray[np.float64]
+
+_SIZES_KNOWN = 15  # frames after which the scale filter has seen enough to be followed
+_SMALLEST_SIDE = 3.0  # px: below this a target is not shrunk any more
+
+
+class Size:
+    """Follows the target's size with the scale filter, as far as it is believed.
+
+    Args:
+        config: parameters.
+        box: the target's first one.
+        cells: (w, h) of the target in cells.
+
+    Attributes:
+        first: (w, h) of the first box, px.
+        growth: the size over that of the first box.
+    """
+
+    def __init__(self, config: TrackerConfig, box: Box, cells: Cells) -> None:
+        self.first: Floats = np.array([box.w, box.h])
+        self.growth = 1.0
+        self._filter = scale_filter(config, cells) if config.scales > 1 else None
+        self._limit = config.growth_limit
+        self._frames = 0
+
+    def box(self, centre: Floats, growth: float | None = None) -> Box:
+        """The target's box at ``centre`` (x, y), px, at the present growth or at another."""
+        width, height = self.first * (self.growth if growth is None else growth)
+        return Box.from_centre(float(centre[0]), float(centre[1]), float(width), float(height))
+
+    def side(self, growth: float) -> float:
+        """sqrt(w h), px, of the target's box at that growth."""
+        return growth * math.sqrt(self.first.prod())
+
+    def follow(self, planes: Planes, centre: Floats, dt: float) -> float:
+        """Take over the change of size in a frame; returns the ratio to the size before.
+
+        Args:
+            planes: C channels (H, W) uint8.
+            centre: (x, y) of the target, px of the channels.
+            dt: time since the last frame, s.
+        """
+        if self._filter is None:
+            return 1.0
+        ratio = self._filter.change(planes, centre)
+        self._frames = min(self._frames + 1, _SIZES_KNOWN)
+        fastest = math.exp(self._limit * dt * self._frames / _SIZES_KNOWN)
+        ratio = min(max(ratio, 1 / fastest), fastest)
+        least = _SMALLEST_SIDE / float(self.first.min())
+        before = self.growth
+        self.growth = max(before * ratio, min(before, least))
+        return self.growth / before
+
+    def learn(self, planes: Planes, centre: Floats, ratio: float) -> None:
+        """Learn what the target looks like, ``ratio`` times as large as it was looked for."""
+        if self._filter:
+            self._filter.learn(planes, centre, ratio)

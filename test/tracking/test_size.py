@@ -1,0 +1,85 @@
+# Copyright 2026 het_ros maintainers
+# SPDX-License-Identifier: Apache-2.0
+import math
+from dataclasses import replace
+
+import cv2
+import numpy as np
+import pytest
+
+from het_ros import Box, TrackerConfig
+from het_ros.tracking.size import Size
+
+CELLS = (24.0, 24.0)
+CENTRE = np.array([48.0, 48.0])
+DT = 1 / 30
+
+
+def planes(growth=1.0):
+    """Three channels (96, 96) of noise, seen ``growth`` times as large about the centre."""
+    rng = np.random.default_rng(3)
+    to_source = np.array([[1 / growth, 0, 48 - 48 / growth], [0, 1 / growth, 48 - 48 / growth]])
+    flags = cv2.INTER_LINEAR | cv2.WARP_INVERSE_MAP
+    noise = (rng.integers(0, 256, (96, 96), np.uint8) for _ in range(3))
+    smooth = (cv2.GaussianBlur(plane, (0, 0), 2) for plane in noise)
+    return tuple(cv2.warpAffine(plane, to_source, (96, 96), flags=flags) for plane in smooth)
+
+
+def started(box, frames=20, **changes):
+    """A size that has seen its target for some frames at the size of its first box."""
+    size = Size(replace(TrackerConfig(), **changes), box, CELLS)
+    size.learn(planes(), CENTRE, 1.0)
+    for _ in range(frames):
+        size.follow(planes(), CENTRE, DT)
+    return size
+
+
+def test_the_box_has_the_size_of_the_first_one_times_the_growth():
+    size = Size(TrackerConfig(), Box(10, 20, 30, 60), CELLS)
+    assert size.box(CENTRE) == Box(33, 18, 30, 60)
+    assert size.box(CENTRE, 2.0) == Box(18, -12, 60, 120)
+    assert size.side(2.0) == pytest.approx(2 * math.sqrt(30 * 60))
+
+
+def test_who_keeps_its_size_is_given_the_same_size():
+    assert started(Box(0, 0, 40, 40)).growth == pytest.approx(1.0, abs=0.005)
+
+
+@pytest.mark.parametrize("growth", [0.94, 0.97, 1.03, 1.06])
+def test_a_change_of_size_is_found_in_a_few_frames(growth):
+    size = started(Box(0, 0, 40, 40), growth_limit=100.0)
+    for _ in range(8):
+        # The target is looked for at the size it has by now.
+        ratio = size.follow(planes(growth / size.growth), CENTRE, DT)
+        assert (ratio - 1) * (growth - 1) > -0.002
+    assert size.growth == pytest.approx(growth, abs=0.01)
+
+
+@pytest.mark.parametrize(("growth", "sign"), [(1.2, 1), (0.8, -1)])
+@pytest.mark.parametrize("dt", [DT, 0.1])
+def test_it_changes_no_faster_than_the_limit(growth, sign, dt):
+    size = started(Box(0, 0, 40, 40))
+    limit = TrackerConfig().growth_limit
+    assert size.follow(planes(growth), CENTRE, dt) == pytest.approx(math.exp(sign * limit * dt))
+
+
+def test_the_first_frames_know_too_little_of_sizes_to_be_followed_in_full():
+    ratios = []
+    for frames in (0, 5, 14):
+        ratios.append(started(Box(0, 0, 40, 40), frames).follow(planes(1.2), CENTRE, DT))
+    assert 1 < ratios[0] < ratios[1] < ratios[2]
+    assert ratios[2] == pytest.approx(math.exp(TrackerConfig().growth_limit * DT))
+
+
+@pytest.mark.parametrize(("box", "least"), [(Box(0, 0, 4, 40), 3.0), (Box(0, 0, 2, 40), 2.0)])
+def test_it_does_not_shrink_below_three_px_nor_grow_where_it_starts_below(box, least):
+    size = started(box)
+    for _ in range(200):
+        size.follow(planes(0.9), CENTRE, 0.1)
+    assert size.growth * box.w == pytest.approx(least, rel=0.01)
+
+
+def test_with_one_size_nothing_changes():
+    size = started(Box(0, 0, 40, 40), scales=1)
+    assert size.follow(planes(1.2), CENTRE, DT) == 1.0
+    assert size.growth == 1.0
