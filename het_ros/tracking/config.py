@@ -57,6 +57,9 @@ class TrackerConfig:
     largest_rectangle: float = parameter(
         1.0, "longest side of a rectangle over the sub-patch's side", low=0.01, high=1.0
     )
+    light_jumps: bool = parameter(
+        True, "take back exposure and white balance that jump from one image to the next"
+    )
     # Bottom layer: base ensembles.
     base_ensemble: str = parameter(
         "ridge", "how a base ensemble weighs its features", choices=("ridge", "naive_bayes")
@@ -254,6 +257,7 @@ class TrackerConfig:
             colour_weight=0.0,
             flow_weight=0.0,
             camera_motion=False,
+            light_jumps=False,
             scales=1,
             acceleration=20.0,
             measurement_noise=0.05,

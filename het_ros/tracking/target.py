@@ -6,6 +6,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -30,6 +31,7 @@ from het_ros.tracking.layers import (
     motion_model,
     whole,
 )
+from het_ros.tracking.light import Light
 from het_ros.tracking.response import Peak, find_peak
 from het_ros.tracking.search import other_size, search_centre
 from het_ros.tracking.size import Size
@@ -76,6 +78,7 @@ class Target:
         self._flow = FlowPrior(config, self._cells)
         self._seen_at = np.array(box.centre)
         self._inertia = Inertia(image, self._seen_at) if config.camera_motion else None
+        self._light = Light() if config.light_jumps else None
         frame = self._look(image, self._seen_at, 1.0)
         self._learn(frame, self._corner_in(frame.window), np.ones(config.sub_patches, bool), 1.0)
 
@@ -179,9 +182,20 @@ class Target:
             height * config.cell,
             (float(scale[0]), float(scale[1])),
         )
+        window = self._in_first_light(window)
         planes = channel_stack(window.pixels, self._channels, config.cell)
         features = self._features.maps(integral_images(planes))
         return Frame(window.in_cells(config.cell), planes, features, growth)
+
+    def _in_first_light(self, window: Window) -> Window:
+        """The window without jumps of exposure and white balance since the first frame."""
+        if self._light is None:
+            return window
+        if self._trust and self._trust.hidden_frames:  # it is looked for elsewhere
+            self._light.forget()
+        else:
+            self._light.observe(window.pixels)
+        return replace(window, pixels=self._light.undo(window.pixels))
 
     def _measure(self, frame: Frame) -> Measurement:
         """Bottom and middle layer."""
