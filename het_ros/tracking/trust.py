@@ -26,7 +26,8 @@ _AWAY = 5  # frames hidden, from which on it is a return when somebody is seen a
 _UNSURE = 0.85  # probability of being recognised below which a return is on probation, ...
 _PROBATION = 1.0  # ... s in which only who ...
 _AS_BEFORE = 0.85  # ... is this much like the target (share of the score's mean) is learnt
-_RETURN_RESIZED = 0.9  # and one that comes back at another size with this
+_RETURN_RESIZED = 0.9  # and one that comes back at another size with this, ...
+_WHOLE = 0.8  # ... and at least this share of the score's mean
 _ANY_RIVAL = 10.0  # shares beyond this say no more
 _YOUNG = 10  # frames in which the model has seen too little to be ambiguous about a rival
 _NEVER_BELOW = 0.2  # relative template score that nothing can excuse
@@ -147,7 +148,9 @@ class Trust:
         relative = self._relative(evidence)
         probability = recognised(relative)
         least = max(_RETURN_RESIZED, recognised(self._relative(other)))
-        return probability > least and self._is_back(relative)
+        # Half of a target looks much like all of it at a smaller size.
+        whole = relative.template >= _WHOLE
+        return whole and probability > least and self._is_back(relative)
 
     def _relative(self, evidence: Evidence) -> Evidence:
         """Template and colour over their means, the rival over the best place."""

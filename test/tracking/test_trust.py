@@ -146,6 +146,22 @@ def test_weak_evidence_that_would_do_while_tracking_does_not_bring_it_back():
     assert trust.judge(weak, 0.1) is Verdict.HIDDEN
 
 
+@pytest.mark.parametrize(
+    ("evidence", "back"),
+    [
+        (Evidence(0.95, 0.8, 0.2), True),
+        (Evidence(0.75, 0.8, 0.2), False),  # half of it looks like all of it, but smaller
+        (Evidence(0.95, 0.4, 0.2, moved=0.5), False),  # not its colours
+    ],
+    ids=str,
+)
+def test_back_at_another_size_only_as_a_whole(evidence, back):
+    trust = grown_up()
+    for _ in range(10):
+        trust.judge(GONE, 0.1)
+    assert trust.is_surely_back(evidence, other=GONE) is back
+
+
 @pytest.mark.parametrize("worse", ["moved", "away", "spread", "rival"])
 def test_less_is_recognised_the_more_speaks_against_it(worse):
     known = [recognised(Evidence(**{**BACK, worse: value})) for value in (0.1, 0.3, 0.5)]
