@@ -3,9 +3,9 @@
 """More frames than the installed tracker can process: latency, drops, memory.
 
 First the camera sends as fast as it goes, which tells how many frames a second the tracker can
-process; then more than three times as many. Newest wins: a frame that is processed was taken when
-it was the newest, so it is answered within two frame times of processing, and all others are
-counted as dropped on /diagnostics.
+process; then three times as many. Newest wins: a frame that is processed was taken when it was
+the newest, so it is answered within two frame times of processing, and all others are counted as
+dropped on /diagnostics.
 """
 
 from __future__ import annotations

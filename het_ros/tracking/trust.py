@@ -72,6 +72,11 @@ class Evidence:
     away: float = 0.0
     spread: float = 0.0
 
+    @property
+    def alike(self) -> float:
+        """Shape and colours together."""
+        return self.template * self.colour
+
 
 class Trust:
     """Judges each frame and keeps the state TRACKING, COASTING or LOST.
@@ -171,12 +176,12 @@ class Trust:
 
     def _is_plain(self, relative: Evidence) -> bool:
         """Whether shape and colours speak for it, or it is clearly the likeliest place."""
-        alike = relative.template * relative.colour >= self._limits.hidden
+        alike = relative.alike >= self._limits.hidden
         return (alike and relative.colour >= _RETURN_COLOUR) or self._is_clear(relative)
 
     def _is_in_place(self, relative: Evidence) -> bool:
         """Whether it is where it must be and known there, though blur or light take much away."""
-        barely = relative.template * relative.colour >= _BARELY * self._limits.hidden
+        barely = relative.alike >= _BARELY * self._limits.hidden
         here = relative.moved <= _IN_PLACE and self._unclear_for <= _UNCLEAR_TIME
         known = recognised(relative) >= _KNOWN_THERE or self._is_clear(relative)
         return barely and here and known
@@ -197,7 +202,7 @@ class Trust:
         least = limits.return_probability
         if relative.moved > _FAR:
             least = max(least, _RETURN_FAR)
-        alike = relative.template * relative.colour >= limits.hidden
+        alike = relative.alike >= limits.hidden
         return alike and relative.colour >= _RETURN_COLOUR and recognised(relative) >= least
 
     def _returns_unsure(self, relative: Evidence) -> bool:
@@ -211,10 +216,9 @@ class Trust:
         old = self._frames > _YOUNG
         if template < _NEVER_BELOW:
             return Verdict.HIDDEN
-        alike = template * colour
-        if old and alike < limits.hidden:
+        if old and relative.alike < limits.hidden:
             # Where the light changes the colours do too, but nothing else looks like the target.
-            clear = alike >= _BARELY * limits.hidden and self._is_clear(relative)
+            clear = relative.alike >= _BARELY * limits.hidden and self._is_clear(relative)
             there = clear or self._is_in_place(relative)
             return Verdict.DOUBTED if there else Verdict.HIDDEN
         ambiguous = template < limits.doubt_template and rival > limits.doubt_rival
