@@ -113,8 +113,7 @@ class Camera(Node):
             self._publish(i)
             if i == 0:
                 self.start(box)
-            # A frame that is late does not make all later ones late, as with a clock of its own.
-            due = max(due + 1 / self.rate, time.perf_counter() - 1 / self.rate)
+            due = max(due + 1 / self.rate, time.perf_counter())
             self._spin_until(due, spin)
 
     def finish(self, spin: Spin) -> None:
@@ -132,7 +131,7 @@ class Camera(Node):
         self._images.publish(message)
 
     def _spin_until(self, end: float, spin: Spin) -> None:
-        """Serve callbacks until then; also of a camera that is late."""
+        """Serve callbacks until then; also of a camera that is late, whose rate falls instead."""
         for _ in range(CALLBACKS):
             spin(0.0)
         while (left := end - time.perf_counter()) > 0:
