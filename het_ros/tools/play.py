@@ -17,6 +17,7 @@ from tqdm import tqdm
 from het_ros.tools.arguments import INTERRUPTED, add_bag, command, split_ros_arguments
 from het_ros.tools.bag_reader import BagReader, header_stamp
 from het_ros.tools.bag_writer import BagWriter
+from het_ros.tools.handshake import wait_until_known
 from het_ros.tools.interrupt import StopRequest
 from het_ros.tools.outputs import DEFAULT_TRACKER
 from het_ros.tools.player import LONGEST_SPIN, NobodyListensError, Player, Spin
@@ -26,7 +27,6 @@ from het_ros.tools.transport import use_profile
 from het_ros.tracking.box import Box
 
 WAIT = 10.0  # s for the tracker to be there
-SETTLE = 0.1  # s for its publishers to know our subscriptions, once we know them
 LAST_ANSWER = 2.0  # s of silence after which no more answers are expected
 
 EXAMPLE = """example, in two terminals:
@@ -88,6 +88,7 @@ def play(
             recorder = Recorder(node, bag_of_answers, tracker)
             player.wait_for_subscriber(spin, wait, stop)
             _wait_for_tracker(recorder, tracker, spin, wait, stop)
+            wait_until_known(node, tracker, spin, wait, stop)
             return _play_and_record(player, recorder, spin, rate, stop)
     finally:
         node.destroy_node()
@@ -105,13 +106,6 @@ def _wait_for_tracker(
                 "give the tracker's name with --tracker /namespace/name"
             )
         spin(LONGEST_SPIN)
-    _spin_for(SETTLE, spin, stop)
-
-
-def _spin_for(seconds: float, spin: Spin, stop: StopRequest) -> None:
-    end = time.monotonic() + seconds
-    while not stop and (left := end - time.monotonic()) > 0:
-        spin(min(left, LONGEST_SPIN))
 
 
 def _play_and_record(
