@@ -15,6 +15,7 @@ from collections.abc import Sequence
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import asdict, replace
 from functools import partial
+from multiprocessing import get_context
 from pathlib import Path
 
 import cv2
@@ -100,7 +101,8 @@ def main(argv: list[str] | None = None) -> int:
         for camera in CAMERAS
         for seed in range(options.first_seed, options.first_seed + options.seeds)
     ]
-    with ProcessPoolExecutor(options.jobs) as pool:
+    # A fork of a process that has OpenCV's or ROS's threads may hang in their locks.
+    with ProcessPoolExecutor(options.jobs, mp_context=get_context("spawn")) as pool:
         found = pool.map(partial(judged, tracker_seed=options.tracker_seed), configs)
         results = list(zip(configs, tqdm(found, total=len(configs), unit="scene"), strict=True))
     print(table(results))
