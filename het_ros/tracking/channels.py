@@ -12,10 +12,12 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-Pixels = NDArray[np.uint8]
-Plane = NDArray[np.float32]
+from het_ros.tracking.gray import Pixels, Plane, bgr_of, deviation, gray_of
 
 ORIENTATIONS = 6
+# Deviations of gray values rarely exceed 64; they are taken from a square of this side, px.
+_TEXTURE_SCALE = 4.0
+_TEXTURE_SIDE = 11
 # Normalised gradients lie in 0..2 or so; times this they fill a byte.
 _GRADIENT_SCALE = 80.0
 # Gradients far below this many grey values are noise and are not blown up by normalisation.
@@ -33,16 +35,12 @@ class _Source:
     @cached_property
     def bgr(self) -> Pixels:
         """(H, W, 3) uint8; a gray image three times."""
-        if self.pixels.ndim == 3:
-            return self.pixels
-        return np.asarray(cv2.cvtColor(self.pixels, cv2.COLOR_GRAY2BGR), np.uint8)
+        return bgr_of(self.pixels)
 
     @cached_property
     def gray(self) -> Pixels:
         """(H, W) uint8."""
-        if self.pixels.ndim == 2:
-            return self.pixels
-        return np.asarray(cv2.cvtColor(self.pixels, cv2.COLOR_BGR2GRAY), np.uint8)
+        return gray_of(self.pixels)
 
     @cached_property
     def lab(self) -> Pixels:
@@ -53,6 +51,11 @@ class _Source:
     def lightness(self) -> Pixels:
         """(H, W) uint8, L* of a colour image or the gray image itself."""
         return self.pixels if self.pixels.ndim == 2 else np.ascontiguousarray(self.lab[..., 0])
+
+    @property
+    def texture(self) -> Plane:
+        """(H, W) float32, how much the gray values around each pixel differ."""
+        return np.asarray(_TEXTURE_SCALE * deviation(self.gray, _TEXTURE_SIDE), np.float32)
 
     @cached_property
     def gradient(self) -> tuple[Plane, Plane]:
@@ -104,8 +107,9 @@ _TABLE: dict[str, tuple[Callable[[_Source], NDArray[np.generic]], str | None]] =
     "g": (lambda source: source.bgr[..., 1], "gray"),
     "r": (lambda source: source.bgr[..., 2], "gray"),
     "lightness": (lambda source: source.lightness, "lightness"),
-    "green_red": (lambda source: source.lab[..., 1], None),
+    "green_red": (lambda source: source.lab[..., 1], "texture"),
     "blue_yellow": (lambda source: source.lab[..., 2], None),
+    "texture": (lambda source: source.texture, "texture"),
     "gradient": (lambda source: source.gradient[0], "gradient"),
     **{f"orientation{k}": (_orientation(k), f"orientation{k}") for k in range(ORIENTATIONS)},
 }
@@ -113,17 +117,17 @@ _TABLE: dict[str, tuple[Callable[[_Source], NDArray[np.generic]], str | None]] =
 CHANNEL_NAMES: tuple[str, ...] = tuple(_TABLE)
 
 
-def names_for(names: tuple[str, ...], image: NDArray[np.uint8]) -> tuple[str, ...]:
-    """The channels that a target gets which starts on ``image``.
+def names_for(names: tuple[str, ...], gray: bool) -> tuple[str, ...]:
+    """The channels that a target gets.
 
-    Colour says nothing in a gray image, so ("b", "g", "r") becomes ("gray",) there. Later images
-    of the same track may be of the other kind: they are converted.
+    Colour says nothing in a gray image, so ("b", "g", "r") becomes ("gray",) there, and texture
+    takes the place of green_red.
 
     Args:
         names: channels by name.
-        image: (H, W, 3) or (H, W) uint8.
+        gray: whether its images are without colour.
     """
-    if image.ndim == 3:
+    if not gray:
         return names
     instead = (_TABLE[name][1] for name in names)
     return tuple(dict.fromkeys(name for name in instead if name is not None)) or ("gray",)

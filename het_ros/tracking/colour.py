@@ -13,10 +13,13 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-Plane = NDArray[np.float32]
+from het_ros.tracking.gray import Plane, deviation
+
 Corner = tuple[float, float]
 
-_BITS = 4  # a channel: 16 x 16 x 16 bins of colour, or 16 of gray
+_BITS = 4  # a channel: 16 x 16 x 16 bins of colour, or 16 x 16 of gray and its deviation
+_AROUND = 7  # side of the square of that deviation, px ...
+_DEVIATION_SCALE = 4.0  # ... which seldom exceeds 64 gray values
 _EMPTY = 1e-4  # share of a bin below which little is known of its colour
 _STRANGE = 0.2  # likelihood of a colour never seen: what comes in between is not the target
 _CORE = 0.8  # the target's colours are taken from this part of the box: corners are background
@@ -79,9 +82,16 @@ class ColourModel:
 
 
 def colour_bins(pixels: NDArray[np.uint8]) -> NDArray[np.intp]:
-    """Bin (H, W) of each pixel's colour, below 4096."""
+    """Bin (H, W) of each pixel's colour, below 4096.
+
+    A gray pixel's bin is that of its level and of how much the levels around it differ: the level
+    alone tells a target from its surroundings far less well than a colour does.
+    """
     if pixels.ndim == 2:
-        return (pixels >> (8 - _BITS)).astype(np.intp)
+        differ = cv2.convertScaleAbs(deviation(pixels, _AROUND), alpha=_DEVIATION_SCALE)
+        unused = 8 - _BITS
+        both = pixels >> unused << _BITS | np.asarray(differ, np.uint8) >> unused
+        return both.astype(np.intp)
     # The upper bits of each channel where they belong, in as few and as narrow passes as can be.
     upper = np.uint8(256 - (1 << 8 - _BITS))
     first = (pixels[..., 0] & upper).astype(np.uint16)

@@ -36,6 +36,13 @@ class TrackerConfig:
     channels: tuple[str, ...] = parameter(
         _ALL_CHANNELS, "image channels that features are taken from", choices=CHANNEL_NAMES
     )
+    gray_below: float = parameter(
+        2.0,
+        "images of three channels that differ by less than this in the mean are taken as gray",
+        unit="gray values",
+        low=0,
+        high=255,
+    )
     working_side: float = parameter(
         48.0,
         "sqrt(w h) of the target in the search window; 0 takes the image as it is",
@@ -238,6 +245,7 @@ class TrackerConfig:
             seed=seed,
             most_memory=2000.0,
             channels=("b", "g", "r"),
+            gray_below=0.0,
             working_side=0.0,
             cell=1,
             sub_patches=11,

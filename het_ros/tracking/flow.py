@@ -60,13 +60,6 @@ class Flow:
     share: float
 
 
-def gray_of(pixels: NDArray[np.uint8]) -> NDArray[np.uint8]:
-    """(H, W) uint8 of a window (H, W, 3) BGR or (H, W)."""
-    if pixels.ndim == 2:
-        return pixels
-    return np.asarray(cv2.cvtColor(pixels, cv2.COLOR_BGR2GRAY), np.uint8)
-
-
 def trace(before: Sight, window: Window, gray: NDArray[np.uint8], moved: Floats) -> Flow | None:
     """Follow the target of the last frame into this frame's window.
 

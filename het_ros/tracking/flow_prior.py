@@ -11,7 +11,8 @@ from numpy.typing import NDArray
 
 from het_ros.tracking.box import Box
 from het_ros.tracking.config import TrackerConfig
-from het_ros.tracking.flow import Flow, Sight, gray_of, trace
+from het_ros.tracking.flow import Flow, Sight, trace
+from het_ros.tracking.gray import gray_of
 from het_ros.tracking.window import Window
 
 Floats = NDArray[np.float64]

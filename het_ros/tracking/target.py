@@ -22,6 +22,7 @@ from het_ros.tracking.cost import check_cost
 from het_ros.tracking.estimate import Estimate, Patch, State
 from het_ros.tracking.flow_prior import FlowPrior
 from het_ros.tracking.frame import Floats, Frame, Image, Measurement
+from het_ros.tracking.gray import bgr_of, gray_of, is_colourless
 from het_ros.tracking.inertia import Inertia
 from het_ros.tracking.layers import (
     base_ensembles,
@@ -43,6 +44,8 @@ Witness = Callable[[Box], bool]
 
 # A rival is a place of the target at least this part of its side away from the best one.
 _RIVAL_APART = 0.35
+# Blur takes texture away as it does shape: without colour the two must not count twice.
+_GRAY_POWER = 0.7
 
 
 class Target:
@@ -66,7 +69,8 @@ class Target:
         self._sub_patches = draw_sub_patches(
             (self._cells[0], self._cells[1]), config.sub_patches, config.sub_patch_fraction, rng
         )
-        self._channels = names_for(config.channels, image)
+        self._gray = is_colourless(image, config.gray_below)
+        self._channels = names_for(config.channels, self._gray)
         self._features = compressive_features(
             config, self._sub_patches.size, len(self._channels), rng
         )
@@ -182,20 +186,21 @@ class Target:
             height * config.cell,
             (float(scale[0]), float(scale[1])),
         )
-        window = self._in_first_light(window)
+        window = self._as_at_first(window)
         planes = channel_stack(window.pixels, self._channels, config.cell)
         features = self._features.maps(integral_images(planes))
         return Frame(window.in_cells(config.cell), planes, features, growth)
 
-    def _in_first_light(self, window: Window) -> Window:
-        """The window without jumps of exposure and white balance since the first frame."""
-        if self._light is None:
-            return window
-        if self._trust and self._trust.hidden_frames:  # it is looked for elsewhere
-            self._light.forget()
-        else:
-            self._light.observe(window.pixels)
-        return replace(window, pixels=self._light.undo(window.pixels))
+    def _as_at_first(self, window: Window) -> Window:
+        """The window, gray or in colour as the first, without jumps of light since then."""
+        pixels = gray_of(window.pixels) if self._gray else bgr_of(window.pixels)
+        if self._light:
+            if self._trust and self._trust.hidden_frames:  # it is looked for elsewhere
+                self._light.forget()
+            else:
+                self._light.observe(pixels)
+            pixels = self._light.undo(pixels)
+        return replace(window, pixels=pixels)
 
     def _measure(self, frame: Frame) -> Measurement:
         """Bottom and middle layer."""
@@ -240,7 +245,7 @@ class Target:
         side = self._size.side(frame.growth)
         return Evidence(
             peak.template,
-            peak.colour,
+            peak.colour**_GRAY_POWER if self._gray else peak.colour,
             peak.rival,
             moved=float(np.hypot(*(centre - self._motion.centre))) / side,
             away=float(np.hypot(*(centre - self._seen_at))) / side,

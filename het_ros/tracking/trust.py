@@ -36,6 +36,7 @@ _CLEAR = 0.6  # ... and the most that the best other place has of its template s
 _BARELY = 0.65  # share of ``hidden`` below which not even such a place is followed
 _IN_PLACE = 0.3  # target sides from the prediction: who is found there ...
 _KNOWN_THERE = 0.8  # ... and recognised with this probability is not hidden, ...
+_BARELY_THERE = 0.4  # ... down to this share of ``hidden``, ...
 _UNCLEAR_TIME = 0.5  # ... unless nothing else has spoken for it for so long, s
 _SURE = 100.0  # a logit beyond which nothing changes but that exp() overflows
 # Logistic regression of "IoU over 0.5" on the evidence, over the frames of many real tracks.
@@ -181,7 +182,7 @@ class Trust:
 
     def _is_in_place(self, relative: Evidence) -> bool:
         """Whether it is where it must be and known there, though blur or light take much away."""
-        barely = relative.alike >= _BARELY * self._limits.hidden
+        barely = relative.alike >= _BARELY_THERE * self._limits.hidden
         here = relative.moved <= _IN_PLACE and self._unclear_for <= _UNCLEAR_TIME
         known = recognised(relative) >= _KNOWN_THERE or self._is_clear(relative)
         return barely and here and known

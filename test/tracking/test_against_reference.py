@@ -29,7 +29,7 @@ def reference_tracker(config, image, box):
     """A reference with the sub-patches and the matrix that the tracker draws."""
     rng = np.random.default_rng(config.seed)
     patches = draw_sub_patches((box.w, box.h), config.sub_patches, config.sub_patch_fraction, rng)
-    names = names_for(config.channels, image)
+    names = names_for(config.channels, image.ndim == 2)
     matrix = draw_measurement_matrix(
         patches.size, len(names), config.features, config.rectangles, rng
     )

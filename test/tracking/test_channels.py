@@ -29,15 +29,18 @@ def test_every_channel_comes_of_every_image(pixels, name):
 
 
 @pytest.mark.parametrize(
-    ("names", "image", "wanted"),
+    ("names", "gray", "wanted"),
     [
-        (("b", "g", "r"), COLOUR, ("b", "g", "r")),
-        (("b", "g", "r"), GRAY, ("gray",)),
-        (("gray",), COLOUR, ("gray",)),
+        (("b", "g", "r"), False, ("b", "g", "r")),
+        (("b", "g", "r"), True, ("gray",)),
+        (("gray",), False, ("gray",)),
+        (("green_red", "blue_yellow"), True, ("texture",)),
+        (("green_red", "gradient"), True, ("texture", "gradient")),
+        (("blue_yellow",), True, ("gray",)),
     ],
 )
-def test_names_for_the_first_image(names, image, wanted):
-    assert names_for(names, image) == wanted
+def test_names_for_images_with_colour_and_without(names, gray, wanted):
+    assert names_for(names, gray) == wanted
 
 
 def slow_cells(plane, cell):
@@ -142,9 +145,3 @@ def test_gradients_say_the_same_in_the_shade(sequence, factor):
     darker = unlit[strong].mean() / lit[strong].mean()
     assert ratio > 0.75  # nearly as strong
     assert darker < ratio
-
-
-@pytest.mark.parametrize("names", [("green_red", "blue_yellow"), ("green_red", "gradient")])
-def test_a_gray_image_has_no_colour_channels(names):
-    wanted = tuple(n for n in names if n == "gradient") or ("gray",)
-    assert names_for(names, GRAY) == wanted

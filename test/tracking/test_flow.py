@@ -5,7 +5,8 @@ import numpy as np
 import pytest
 
 from het_ros import Box
-from het_ros.tracking.flow import Sight, gray_of, trace
+from het_ros.tracking.flow import Sight, trace
+from het_ros.tracking.gray import gray_of
 from het_ros.tracking.window import cut_window
 
 SIZE = (120, 140)  # (w, h) of the windows, px

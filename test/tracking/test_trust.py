@@ -40,7 +40,7 @@ def grown_up(limits=LIMITS, frames=60, dt=1 / 30):
         (Evidence(0.15, 5.0, 0.0), Verdict.HIDDEN),  # no colour excuses a shape that is gone
         (Evidence(0.65, 0.5, 0.3), Verdict.DOUBTED),  # in other light: nobody else looks so
         (Evidence(0.65, 0.5, 0.65), Verdict.HIDDEN),  # somebody else does
-        (Evidence(0.4, 0.5, 0.1), Verdict.HIDDEN),  # shape and colour both half gone
+        (Evidence(0.3, 0.4, 0.1), Verdict.HIDDEN),  # shape and colours more than half gone
         (Evidence(0.0, 0.0, 0.0), Verdict.HIDDEN),
         (Evidence(-0.3, 0.8, -0.2), Verdict.HIDDEN),
     ],
@@ -85,7 +85,7 @@ def test_hidden_frames_are_counted_until_the_target_is_back():
 @pytest.mark.parametrize(
     ("evidence", "back"),
     [
-        (Evidence(0.3, 0.8, 0.1), False),  # too little is left of it
+        (Evidence(0.2, 0.7, 0.1), False),  # too little is left of it
         (Evidence(1.0, 0.4, 0.1, moved=0.4), False),  # its colours are not back
         (Evidence(0.6, 0.8, 0.1), True),  # where it was, and nothing rivals it
         (Evidence(0.8, 0.8, 0.65, moved=1.0, away=1.0), False),  # anybody over there
@@ -115,7 +115,7 @@ BLURRED = Evidence(0.55, 0.6, 0.5)
         (BLURRED, Verdict.DOUBTED),  # where it must be
         (replace(BLURRED, moved=0.4), Verdict.HIDDEN),  # it would have to have jumped
         (replace(BLURRED, rival=0.9), Verdict.HIDDEN),  # another place looks as much like it
-        (replace(BLURRED, template=0.35), Verdict.HIDDEN),  # hardly anything is left
+        (replace(BLURRED, template=0.3), Verdict.HIDDEN),  # hardly anything is left
     ],
     ids=str,
 )
