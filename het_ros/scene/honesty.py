@@ -11,6 +11,7 @@ from het_ros.scene.config import SceneConfig
 from het_ros.scene.scene import Frame, Scene
 from het_ros.tracking.config import TrackerConfig
 from het_ros.tracking.estimate import Estimate, State
+from het_ros.tracking.gray import gray_of
 from het_ros.tracking.tracker import HierarchicalEnsembleTracker
 
 CONFIDENT = 0.5  # a score above is trusted
@@ -80,15 +81,18 @@ class Honesty:
     confident_other: int
 
 
-def followed(config: SceneConfig, tracker_config: TrackerConfig | None = None) -> list[Moment]:
-    """Render a scene and follow its target from its first frame."""
+def followed(
+    config: SceneConfig, tracker_config: TrackerConfig | None = None, gray: bool = False
+) -> list[Moment]:
+    """Render a scene and follow its target from its first frame; ``gray``: without colours."""
     tracker, moments = HierarchicalEnsembleTracker(tracker_config), []
     for frame in Scene(config).frames():
+        image = gray_of(frame.image) if gray else frame.image
         if frame.index:
-            estimate = tracker.update(frame.image, 1 / config.rate)
+            estimate = tracker.update(image, 1 / config.rate)
         else:
             assert frame.box is not None  # every story begins with the target in sight
-            estimate = tracker.init(frame.image, frame.box)
+            estimate = tracker.init(image, frame.box)
         moments.append(Moment.of(frame, estimate))
     return moments
 

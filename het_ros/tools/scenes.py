@@ -39,13 +39,14 @@ CAMERAS = (
 EXAMPLE = """example:
   python -m het_ros.tools.scenes --seeds 5
   python -m het_ros.tools.scenes --stories lookalike_at_column,lookalike_crosses --seeds 20
+  python -m het_ros.tools.scenes --seeds 3 --gray
 """
 
 
-def judged(config: SceneConfig, tracker_seed: int = 0) -> Honesty:
+def judged(config: SceneConfig, tracker_seed: int = 0, gray: bool = False) -> Honesty:
     """Follow one scene and judge it."""
     cv2.setNumThreads(1)  # scenes run side by side
-    return honesty(followed(config, TrackerConfig(seed=tracker_seed)), config.rate)
+    return honesty(followed(config, TrackerConfig(seed=tracker_seed), gray), config.rate)
 
 
 def table(results: Sequence[tuple[SceneConfig, Honesty]]) -> str:
@@ -84,6 +85,7 @@ def main(argv: list[str] | None = None) -> int:
     p.add_argument("--seeds", type=int, default=5, help="scenes of each story and camera (5)")
     p.add_argument("--first-seed", type=int, default=0, help="the first of them (0)")
     p.add_argument("--tracker-seed", type=int, default=0, help="seed of the tracker (0)")
+    p.add_argument("--gray", action="store_true", help="as a camera without colour sees them")
     p.add_argument("--jobs", type=int, help="processes (as many as there are processors)")
     p.add_argument("--out", type=Path, help="also write every scene's figures here, JSON")
     options = p.parse_args(argv)
@@ -103,7 +105,8 @@ def main(argv: list[str] | None = None) -> int:
     ]
     # A fork of a process that has OpenCV's or ROS's threads may hang in their locks.
     with ProcessPoolExecutor(options.jobs, mp_context=get_context("spawn")) as pool:
-        found = pool.map(partial(judged, tracker_seed=options.tracker_seed), configs)
+        judge = partial(judged, tracker_seed=options.tracker_seed, gray=options.gray)
+        found = pool.map(judge, configs)
         results = list(zip(configs, tqdm(found, total=len(configs), unit="scene"), strict=True))
     print(table(results))
     if options.out:

@@ -9,12 +9,13 @@ from het_ros.scene.honesty import Honesty
 from het_ros.tools import scenes
 
 
-def test_a_story_is_followed_and_told(capsys, tmp_path, monkeypatch):
+@pytest.mark.parametrize("more", [[], ["--gray"]], ids=["colour", "gray"])
+def test_a_story_is_followed_and_told(capsys, tmp_path, monkeypatch, more):
     camera = SceneConfig(width=160, height=120, rate=5.0, seconds=2.0)
     monkeypatch.setattr(scenes, "CAMERAS", (camera,))
     out = tmp_path / "results" / "scenes.json"
     given = ["--stories", "plain_walk", "--seeds", "2", "--jobs", "1", "--out", str(out)]
-    assert scenes.main(given) == 0
+    assert scenes.main(given + more) == 0
     table = capsys.readouterr().out
     assert "| plain_walk | 2 | 2 |" in table
     rows = json.loads(out.read_text())
