@@ -18,10 +18,10 @@ from functools import partial
 from multiprocessing import get_context
 from pathlib import Path
 
-import cv2
 import numpy as np
 from tqdm import tqdm
 
+from het_ros.ros.threads import one_thread
 from het_ros.scene import STORIES, SceneConfig
 from het_ros.scene.honesty import Honesty, followed, honesty
 from het_ros.tools.arguments import command
@@ -45,7 +45,7 @@ EXAMPLE = """example:
 
 def judged(config: SceneConfig, tracker_seed: int = 0, gray: bool = False) -> Honesty:
     """Follow one scene and judge it."""
-    cv2.setNumThreads(1)  # scenes run side by side
+    one_thread()  # scenes run side by side
     return honesty(followed(config, TrackerConfig(seed=tracker_seed), gray), config.rate)
 
 
