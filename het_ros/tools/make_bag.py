@@ -89,7 +89,7 @@ def make_bag(
                 bag.write(INIT_BOX_TOPIC, box_message(init, stamp, FRAME_ID), stamp)
         else:
             frames += 1
-    if not frames:
+    if not frames and not stop:
         raise ValueError(f"{footage.source} has no frame that can be read")
     return frames
 

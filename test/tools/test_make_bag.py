@@ -90,6 +90,14 @@ def test_ctrl_c_leaves_a_readable_bag(crossing, tmp_path):
         assert len(list(bag.images())) == 10
 
 
+def test_a_stop_before_the_first_frame_is_no_error(crossing, tmp_path):
+    stop = StopRequest()
+    stop.requested = True
+    assert make_bag(crossing, tmp_path / "bag", stop=stop) == 0
+    with BagReader(tmp_path / "bag") as bag:
+        assert not list(bag.recorded())
+
+
 def test_a_recording_survives_an_exception(crossing_bag, tmp_path):
     with BagReader(crossing_bag) as source:
         first = list(source.recorded())[:7]
