@@ -12,7 +12,7 @@ from contextlib import contextmanager
 from typing import Any
 
 from het_ros.bench.footage import Footage
-from het_ros.tracking import combination, flow_prior, target
+from het_ros.tracking import combination, flow_prior, target, view
 from het_ros.tracking.base_ensembles import NaiveBayes
 from het_ros.tracking.box import Box
 from het_ros.tracking.camera import CameraMotion
@@ -22,14 +22,15 @@ from het_ros.tracking.config import TrackerConfig
 from het_ros.tracking.motion import AdaptiveKalman
 from het_ros.tracking.ridge import RidgeEnsembles
 from het_ros.tracking.scale import ScaleFilter
+from het_ros.tracking.scenery import Scenery
 from het_ros.tracking.tracker import HierarchicalEnsembleTracker
 
 # Stage, where its function lives, the function's name. None of them calls another of them.
 _PLACES: tuple[tuple[str, Any, str], ...] = (
     ("camera", CameraMotion, "follow"),
-    ("window", target, "cut_window"),
-    ("channels", target, "channel_stack"),
-    ("integrals", target, "integral_images"),
+    ("window", view, "cut_window"),
+    ("channels", view, "channel_stack"),
+    ("integrals", view, "integral_images"),
     ("feature maps", CompressiveFeatures, "maps"),
     ("scores", RidgeEnsembles, "score_maps"),
     ("scores", NaiveBayes, "score_maps"),
@@ -43,6 +44,8 @@ _PLACES: tuple[tuple[str, Any, str], ...] = (
     ("peak", combination, "weights"),
     ("peak", combination, "hypotheses"),
     ("peak", combination, "combine"),
+    ("scenery", Scenery, "shows"),
+    ("scenery", Scenery, "remember"),
     ("learn", RidgeEnsembles, "learn"),
     ("learn", NaiveBayes, "learn"),
     ("learn", NaiveBayes, "likelihood"),

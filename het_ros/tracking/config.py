@@ -197,6 +197,12 @@ class TrackerConfig:
     return_probability: float = parameter(
         0.65, "found again where it is the target with this probability", low=0, high=1
     )
+    scenery: bool = parameter(
+        True, "what stood at its place before the target came there is not the target"
+    )
+    colour_search: bool = parameter(
+        True, "look for a hidden target wherever in the image its colours are"
+    )
     lost_after: float = parameter(
         2.0, "a target that stays hidden is coasted this long, then LOST", unit="s", low=0, high=60
     )
@@ -270,4 +276,6 @@ class TrackerConfig:
             acceleration=20.0,
             measurement_noise=0.05,
             trust=False,
+            scenery=False,
+            colour_search=False,
         )

@@ -29,12 +29,15 @@ class Inertia:
     Args:
         image: the first one, (H, W, 3) or (H, W) uint8.
         centre: of the target in it, (x, y) px.
+
+    Attributes:
+        camera_shift: (x, y), px: how far the last image's scene moved, whatever is done with it.
     """
 
     def __init__(self, image: Image, centre: Floats) -> None:
         self._camera = CameraMotion(image)
         self._in_scene = False
-        self._shift = np.zeros(2)
+        self.camera_shift = np.zeros(2)
         self._before: Floats | None = np.array(centre)
         # Velocities, px/s, and errors, target sides, of the predictions in image and scene.
         self._velocities: Floats | None = None  # (2, 2)
@@ -52,8 +55,8 @@ class Inertia:
             image: the next one.
             dt: time since the last one, s, positive.
         """
-        self._shift = self._camera.follow(image, dt)
-        return self._shift if self._in_scene else np.zeros(2)
+        self.camera_shift = self._camera.follow(image, dt)
+        return self.camera_shift if self._in_scene else np.zeros(2)
 
     def observe(self, centre: Floats, side: float, dt: float) -> Floats:
         """Learn from where the target was seen in the image of the last :meth:`shift`.
@@ -70,7 +73,7 @@ class Inertia:
         before, self._before = self._before, np.array(centre)
         if before is None:
             return np.zeros(2)
-        ways = np.array([centre - before, centre - before - self._shift])
+        ways = np.array([centre - before, centre - before - self.camera_shift])
         if self._velocities is None:
             self._velocities = ways / dt
             return np.zeros(2)

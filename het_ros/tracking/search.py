@@ -13,15 +13,26 @@ Floats = NDArray[np.float64]
 _NEAR = ((0, 0), (1, 0), (-1, 0), (0, 1), (0, -1), (1, 1), (-1, -1), (1, -1), (-1, 1))
 _FAR = ((2, 0), (-2, 0), (2, 1), (-2, -1), (2, -1), (-2, 1), (3, 0), (-3, 0))
 _SPIRAL = np.array(_NEAR + _FAR, float)
+_BY_COLOUR = 2  # of three frames away from the prediction
 _SIZES = (0.84, 1.19, 0.71, 1.41)  # over the size when last seen
 _OTHER_SIZES_AFTER = 0.7  # s
 
 
-def search_centre(hidden: int, predicted: Floats, seen_at: Floats, reach: Floats) -> Floats:
-    """Where the target is looked for in this frame, image px (2,).
+def by_colour(hidden: int) -> bool:
+    """Whether the colours say where the target is looked for in this frame.
 
-    A hidden target is looked for at its prediction in every other frame, and in between around
-    the place where it was last seen, farther and farther from it.
+    Args:
+        hidden: frames since it was last seen; 0 for a target in sight.
+    """
+    return hidden % 2 == 1 and hidden // 2 % (_BY_COLOUR + 1) != 0
+
+
+def search_centre(hidden: int, predicted: Floats, seen_at: Floats, reach: Floats) -> Floats:
+    """Where the target is looked for in a frame in which the colours do not say it, image px (2,).
+
+    A hidden target is looked for at its prediction in every other frame, and in between where the
+    colours send it (:func:`by_colour`) or around the place where it was last seen, farther and
+    farther from it.
 
     Args:
         hidden: frames since it was last seen; 0 for a target in sight.

@@ -6,7 +6,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,31 +13,30 @@ from numpy.typing import NDArray
 from het_ros.tracking import combination
 from het_ros.tracking.base_ensembles import detect, scores_at
 from het_ros.tracking.box import Box
-from het_ros.tracking.channels import channel_stack, names_for
 from het_ros.tracking.colour import box_means, cell_means
-from het_ros.tracking.compressive import Features, integral_images
+from het_ros.tracking.colour_search import ColourSearch
+from het_ros.tracking.compressive import Features
 from het_ros.tracking.config import TrackerConfig
 from het_ros.tracking.cost import check_cost
 from het_ros.tracking.estimate import Estimate, Patch, State
 from het_ros.tracking.flow_prior import FlowPrior
 from het_ros.tracking.frame import Floats, Frame, Image, Measurement
-from het_ros.tracking.gray import bgr_of, gray_of, is_colourless
 from het_ros.tracking.inertia import Inertia
 from het_ros.tracking.layers import (
     base_ensembles,
     colour_model,
-    compressive_features,
     grid,
     motion_model,
     whole,
 )
-from het_ros.tracking.light import Light
 from het_ros.tracking.response import Peak, find_peak
-from het_ros.tracking.search import other_size, search_centre
+from het_ros.tracking.scenery import Scenery
+from het_ros.tracking.search import by_colour, other_size, search_centre
 from het_ros.tracking.size import Size
 from het_ros.tracking.sub_patches import draw_sub_patches, to_be_updated
 from het_ros.tracking.trust import Evidence, Trust, Verdict
-from het_ros.tracking.window import Window, cut_window
+from het_ros.tracking.view import View
+from het_ros.tracking.window import Window
 
 Witness = Callable[[Box], bool]
 
@@ -63,17 +61,13 @@ class Target:
     def __init__(self, config: TrackerConfig, image: Image, box: Box) -> None:
         self._config = config
         rng = np.random.default_rng(config.seed)
-        self._cells, self._unit = grid(config, box)
+        self._cells, unit = grid(config, box)
         check_cost(config, self._cells)
         self._radius = config.search_radius / config.cell
         self._sub_patches = draw_sub_patches(
             (self._cells[0], self._cells[1]), config.sub_patches, config.sub_patch_fraction, rng
         )
-        self._gray = is_colourless(image, config.gray_below)
-        self._channels = names_for(config.channels, self._gray)
-        self._features = compressive_features(
-            config, self._sub_patches.size, len(self._channels), rng
-        )
+        self._view = View(config, image, box, self._cells, unit, self._sub_patches.size, rng)
         self._ensembles = base_ensembles(config, self._cells)
         self._colour = colour_model(config, self._cells)
         self._size = Size(config, box, self._cells)
@@ -82,8 +76,11 @@ class Target:
         self._flow = FlowPrior(config, self._cells)
         self._seen_at = np.array(box.centre)
         self._inertia = Inertia(image, self._seen_at) if config.camera_motion else None
-        self._light = Light() if config.light_jumps else None
-        frame = self._look(image, self._seen_at, 1.0)
+        remembers = config.trust and config.scenery
+        self._scenery = Scenery(image.shape, math.sqrt(box.area)) if remembers else None
+        by_colours = config.colour_search and config.colour_weight
+        self._colour_search = ColourSearch() if by_colours else None
+        frame = self._view.look(image, self._seen_at, 1.0)
         self._learn(frame, self._corner_in(frame.window), np.ones(config.sub_patches, bool), 1.0)
 
     def follow(self, image: Image, dt: float, witness: Witness | None = None) -> Estimate:
@@ -102,7 +99,10 @@ class Target:
         verdict = Verdict.SEEN
         hidden = bool(self._trust and self._trust.hidden_frames)
         if self._trust and found.evidence:
-            witnessed = witness is None or witness(self._size.box(centre, frame.growth))
+            box = self._size.box(centre, frame.growth)
+            witnessed = witness is None or witness(box)
+            if witnessed and self._scenery:
+                witnessed = not self._scenery.shows(image, box)
             verdict = self._trust.judge(found.evidence, step, witnessed)
         if verdict is Verdict.HIDDEN:
             self._motion.coast()
@@ -116,6 +116,8 @@ class Target:
             if self._inertia:
                 side = self._size.side(self._size.growth)
                 self._motion.change_velocity(self._inertia.observe(centre, side, step))
+            if self._colour_search:
+                self._colour_search.forget()
             self._seen_at = centre
             self._size.growth = frame.growth
         if not self._trust and not self.box.touches_image(image.shape[1], image.shape[0]):
@@ -125,6 +127,8 @@ class Target:
             self._flow.forget()
         else:
             self._flow.remember(frame.window, self.box, step, score)
+            if self._scenery:
+                self._scenery.remember(image, self.box, step)
         state = self._trust.state if self._trust else State.TRACKING
         patches = () if verdict is Verdict.HIDDEN else self._patches(frame.window, found)
         return self.estimate(score, state, patches)
@@ -148,6 +152,8 @@ class Target:
             shift = self._inertia.shift(image, dt)
             self._motion.shift(shift)
             self._seen_at = self._seen_at + shift
+            if self._scenery:
+                self._scenery.move(self._inertia.camera_shift)
 
     def _search(self, image: Image) -> tuple[Frame, Measurement]:
         """Look for the target; for one that is hidden for long also elsewhere at another size."""
@@ -164,43 +170,15 @@ class Target:
     def _look_for(self, image: Image, hidden: int, size: float) -> tuple[Frame, Measurement]:
         """One look at the place that is ``hidden``'s turn, at ``size`` times the present size."""
         growth = self._size.growth * size
-        reach = self._radius * self._unit * growth
-        centre = search_centre(hidden, self._motion.centre, self._seen_at, reach)
-        frame = self._look(image, centre, growth)
+        reach = self._view.reach(growth)
+        if self._colour_search and by_colour(hidden):
+            box = self._size.box(self._seen_at, growth)
+            colours = self._view.colours
+            centre = self._colour_search.next_place(image, colours, self._colour, box, reach)
+        else:
+            centre = search_centre(hidden, self._motion.centre, self._seen_at, reach)
+        frame = self._view.look(image, centre, growth, elsewhere=hidden > 0)
         return frame, self._measure(frame)
-
-    def _look(self, image: Image, centre: Floats, growth: float) -> Frame:
-        """The window with every place at which a sub-patch is looked for, and its maps."""
-        config = self._config
-        whole = config.working_side > 0
-        margin = math.ceil(self._radius) + (0 if whole else 1)
-        unit = self._unit * growth
-        corner = centre - self._size.first * growth / 2 - margin * unit
-        width, height = (math.ceil(cells) + 2 * margin for cells in self._cells)
-        scale = config.cell / unit
-        window = cut_window(
-            image,
-            float(corner[0]),
-            float(corner[1]),
-            width * config.cell,
-            height * config.cell,
-            (float(scale[0]), float(scale[1])),
-        )
-        window = self._as_at_first(window)
-        planes = channel_stack(window.pixels, self._channels, config.cell)
-        features = self._features.maps(integral_images(planes))
-        return Frame(window.in_cells(config.cell), planes, features, growth)
-
-    def _as_at_first(self, window: Window) -> Window:
-        """The window, gray or in colour as the first, without jumps of light since then."""
-        pixels = gray_of(window.pixels) if self._gray else bgr_of(window.pixels)
-        if self._light:
-            if self._trust and self._trust.hidden_frames:  # it is looked for elsewhere
-                self._light.forget()
-            else:
-                self._light.observe(pixels)
-            pixels = self._light.undo(pixels)
-        return replace(window, pixels=pixels)
 
     def _measure(self, frame: Frame) -> Measurement:
         """Bottom and middle layer."""
@@ -245,7 +223,7 @@ class Target:
         side = self._size.side(frame.growth)
         return Evidence(
             peak.template,
-            peak.colour**_GRAY_POWER if self._gray else peak.colour,
+            peak.colour**_GRAY_POWER if self._view.gray else peak.colour,
             peak.rival,
             moved=float(np.hypot(*(centre - self._motion.centre))) / side,
             away=float(np.hypot(*(centre - self._seen_at))) / side,

@@ -16,7 +16,7 @@ from het_ros.bench.imports import weigh_imports
 from het_ros.bench.process import usage
 from het_ros.bench.scaling import Case, scaling
 from het_ros.bench.stages import STAGES, stage_times, timed_stages
-from het_ros.tracking import target
+from het_ros.tracking import view
 from het_ros.tracking.box import Box
 from het_ros.tracking.config import TrackerConfig
 from het_ros.tracking.motion import AdaptiveKalman
@@ -55,17 +55,17 @@ def test_the_tracker_follows_the_footage(footage):
 
 def test_sizes_of_the_floor_are_those_of_the_tracker(footage, monkeypatch):
     seen = {}
-    whole = target.Target._look
+    whole = view.View.look
 
-    def look(self, image, centre, growth):
-        frame = whole(self, image, centre, growth)
+    def look(self, *args, **kwargs):
+        frame = whole(self, *args, **kwargs)
         seen["window"] = frame.window.pixels.shape[:2]
         seen["cells"] = frame.planes[0].shape
         seen["places"] = frame.features.shape[1] * frame.features.shape[2]
         seen["channels"] = len(frame.planes)
         return frame
 
-    monkeypatch.setattr(target.Target, "_look", look)
+    monkeypatch.setattr(view.View, "look", look)
     config = TrackerConfig()
     HierarchicalEnsembleTracker(config).init(footage[0], middle(footage, (40, 40)))
     sizes = sizes_of(config)
@@ -88,7 +88,7 @@ def test_there_is_no_floor_without_a_working_resolution():
 
 @pytest.mark.parametrize(
     ("config", "idle"),
-    [(SMALL, set()), (TrackerConfig.paper(), {"camera", "colour", "flow", "scale"})],
+    [(SMALL, set()), (TrackerConfig.paper(), {"camera", "colour", "flow", "scale", "scenery"})],
 )
 def test_every_stage_that_a_configuration_has_takes_time(config, idle, footage):
     found = stage_times(config, footage, middle(footage, (24, 40)), frames=2, warm_up=1)
@@ -98,10 +98,10 @@ def test_every_stage_that_a_configuration_has_takes_time(config, idle, footage):
 
 
 def test_timed_stages_leaves_everything_as_it_was():
-    before = target.cut_window, AdaptiveKalman.predict
+    before = view.cut_window, AdaptiveKalman.predict
     with pytest.raises(KeyError), timed_stages():
         raise KeyError
-    assert (target.cut_window, AdaptiveKalman.predict) == before
+    assert (view.cut_window, AdaptiveKalman.predict) == before
 
 
 def test_scaling_times_every_case(footage):

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from het_ros.tracking.search import other_size, search_centre
+from het_ros.tracking.search import by_colour, other_size, search_centre
 
 PREDICTED, SEEN, REACH = np.array([50.0, 40.0]), np.array([10.0, 20.0]), np.array([8.0, 6.0])
 
@@ -15,6 +15,13 @@ def test_every_other_frame_at_the_prediction(hidden):
 
 def test_first_where_it_was_last_seen():
     np.testing.assert_array_equal(search_centre(1, PREDICTED, SEEN, REACH), SEEN)
+
+
+def test_two_of_three_looks_away_from_the_prediction_are_where_the_colours_are():
+    away = [hidden for hidden in range(600) if hidden % 2]
+    assert not any(by_colour(hidden) for hidden in range(0, 600, 2))
+    assert sum(by_colour(hidden) for hidden in away) == len(away) * 2 / 3
+    assert not by_colour(1)  # at first where it was last seen
 
 
 def test_farther_and_farther_and_then_again():
@@ -35,6 +42,7 @@ def test_every_place_is_looked_at_at_every_other_size():
     looks = {
         (other_size(hidden, 1.0), tuple(search_centre(hidden + 1, PREDICTED, SEEN, REACH)))
         for hidden in range(600)
+        if not by_colour(hidden + 1)
     }
     sizes, places = ({look[k] for look in looks} for k in (0, 1))
     assert min(sizes) < 0.75 < 1.4 < max(sizes)
