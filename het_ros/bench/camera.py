@@ -23,16 +23,17 @@ from het_ros.bench.footage import Footage
 from het_ros.ros.debug_image import debug_message
 from het_ros.ros.messages import polygon_from_box, stamp_ns
 from het_ros.ros.status import status_values
+from het_ros.tools.handshake import Spin
 from het_ros.tools.transport import use_profile
 from het_ros.tracking.box import Box
 
 QOS = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)  # what camera drivers offer
 FIRST_STAMP = 1000  # s
 WARM_UP = 1.0  # s, that are not counted
+LAG = 3  # periods that are made up for after a hold-up: no longer bursts than that
 CALLBACKS = 6  # that an image brings about at most, in one process
 GRACE = 1.0  # s, for answers that are on their way at the end
 
-Spin = Callable[[float], None]
 Made = TypeVar("Made", bound=Node)
 
 
@@ -58,6 +59,7 @@ class Camera(Node):
 
     Attributes:
         rate: frames/s.
+        tracker: name of the tracker's node.
         boxes: s from there to the box, by stamp.
         own: s that the tracker says it took from arrival to publishing, by stamp.
         states: the track's state, by stamp.
@@ -72,21 +74,21 @@ class Camera(Node):
         self._init = self.create_publisher(PolygonStamped, f"{tracker}/init_box", 10)
         self.create_subscription(PolygonStamped, f"{tracker}/box", self._on_box, 50)
         self.create_subscription(DiagnosticArray, f"{tracker}/status", self._on_status, 50)
-        self._tracker = tracker
+        self.tracker = tracker
         self._published: dict[int, float] = {}
-        self._counted_from = 0
+        self._counted = range(0)  # stamps
         self.boxes: dict[int, float] = {}
         self.own: dict[int, float] = {}
         self.states: dict[int, str] = {}
 
     @property
     def sent(self) -> dict[int, float]:
-        """When each image was published, s, by its stamp, ns; without those of the warm-up."""
-        return {s: t for s, t in self._published.items() if s >= self._counted_from}
+        """When each image that counts was published, s, by its stamp, ns."""
+        return {s: t for s, t in self._published.items() if s in self._counted}
 
     def connected(self) -> bool:
-        """Whether camera and tracker found each other, in both directions."""
-        topics = (f"{self._tracker}/box", f"{self._tracker}/status")
+        """Whether the camera has found the tracker; see ``handshake`` for the other direction."""
+        topics = (f"{self.tracker}/box", f"{self.tracker}/status")
         publishers = (self._images, self._init)
         return all(self.count_publishers(topic) > 0 for topic in topics) and all(
             publisher.get_subscription_count() > 0 for publisher in publishers
@@ -97,7 +99,10 @@ class Camera(Node):
         self._init.publish(polygon_from_box(box, Header()))
 
     def run(self, seconds: float, box: Box, spin: Spin, on_counting: Callable[[], None]) -> None:
-        """Publish for so long, after a warm-up of ``WARM_UP`` s.
+        """Publish for so long, after a warm-up of ``WARM_UP`` s that does not count.
+
+        Images are due at moments that are fixed from the start, and a late one goes at once. What
+        the camera is late by more than ``LAG`` periods is given up, and the rate falls.
 
         Args:
             seconds: how long images are counted.
@@ -105,15 +110,16 @@ class Camera(Node):
             spin: serves callbacks for at most so many seconds.
             on_counting: called when the counting begins.
         """
+        first, end = (round(s * self.rate) for s in (WARM_UP, WARM_UP + seconds))
+        self._counted = range(self._stamp(first), self._stamp(end))
         due = time.perf_counter()
-        for i in range(round((WARM_UP + seconds) * self.rate)):
-            if i == round(WARM_UP * self.rate):
-                self._counted_from = self._stamp(i)
+        for i in range(end):
+            if i == first:
                 on_counting()
             self._publish(i)
             if i == 0:
                 self.start(box)
-            due = max(due + 1 / self.rate, time.perf_counter())
+            due = max(due, time.perf_counter() - LAG / self.rate) + 1 / self.rate
             self._spin_until(due, spin)
 
     def finish(self, spin: Spin) -> None:
@@ -131,7 +137,7 @@ class Camera(Node):
         self._images.publish(message)
 
     def _spin_until(self, end: float, spin: Spin) -> None:
-        """Serve callbacks until then; also of a camera that is late, whose rate falls instead."""
+        """Serve callbacks until then, and some of a camera that is late."""
         for _ in range(CALLBACKS):
             spin(0.0)
         while (left := end - time.perf_counter()) > 0:

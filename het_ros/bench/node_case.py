@@ -26,6 +26,8 @@ from het_ros.bench.figures import percentiles
 from het_ros.bench.footage import Footage, middle
 from het_ros.bench.process import usage
 from het_ros.ros.tracker_node import TrackerNode
+from het_ros.tools.handshake import meet
+from het_ros.tools.interrupt import StopRequest
 from het_ros.tools.tracker_process import TrackerProcess, find_tracker
 from het_ros.tools.transport import use_profile
 from het_ros.tracking.config import TrackerConfig
@@ -139,16 +141,20 @@ def _measured(
     executor: SingleThreadedExecutor,
 ) -> dict[str, Any]:
     """Latencies, drops and what process ``pid`` takes, while the camera runs."""
-    _wait(executor, camera.connected, check)
+
+    def spin(left: float) -> None:
+        executor.spin_once(timeout_sec=left)
+
+    meet(camera, camera.tracker, camera.connected, spin, PATIENCE, StopRequest(), check)
     before: list[tuple[float, float]] = []
     camera.run(
         seconds,
         middle(footage, TARGET),
-        lambda left: executor.spin_once(timeout_sec=left),
+        spin,
         lambda: before.append((time.perf_counter(), usage(pid).cpu)),
     )
     wall, used = time.perf_counter() - before[0][0], usage(pid)
-    camera.finish(lambda left: executor.spin_once(timeout_sec=left))
+    camera.finish(spin)
     check()
     sent = camera.sent
     return {

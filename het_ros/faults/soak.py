@@ -22,7 +22,7 @@ import cv2
 import numpy as np
 from tqdm import tqdm
 
-from het_ros.bench.camera import Spin, spun
+from het_ros.bench.camera import spun
 from het_ros.bench.figures import percentiles, plain
 from het_ros.faults.loop import Shot, render
 from het_ros.faults.process import Sample, look
@@ -31,6 +31,7 @@ from het_ros.faults.soak_plot import plot
 from het_ros.faults.verdict import judge
 from het_ros.scene.config import SceneConfig
 from het_ros.tools.arguments import INTERRUPTED, add_parameters, command
+from het_ros.tools.handshake import NobodyListensError, Spin, meet
 from het_ros.tools.interrupt import StopRequest
 from het_ros.tools.tracker_arguments import parameter_arguments
 from het_ros.tools.tracker_process import (
@@ -76,19 +77,14 @@ def soak(
 
     Raises:
         TrackerProcessError: the tracker ended by itself.
-        TimeoutError: it cannot be heard.
+        NobodyListensError: it cannot be heard.
     """
     os.environ.update(own_graph())
     with (
         TrackerProcess(find_tracker(), arguments, folder / "tracker.log") as tracker,
         spun(lambda: SoakCamera(shots, rate, np.random.default_rng(seed))) as (camera, spin),
     ):
-        end = time.monotonic() + PATIENCE
-        while not camera.connected() and not stop:
-            tracker.check()
-            spin(0.05)
-            if time.monotonic() > end:
-                raise TimeoutError(f"the tracker cannot be heard after {PATIENCE:g} s")
+        meet(camera, camera.tracker, camera.connected, spin, PATIENCE, stop, tracker.check)
         with (folder / "rows.jsonl").open("w") as file:
             return _watched(camera, spin, tracker, seconds, stop, file)
 
@@ -164,7 +160,7 @@ def main(argv: list[str] | None = None) -> int:
     options = p.parse_args(argv)
     try:
         return _run(options)
-    except (OSError, ValueError, TrackerProcessError) as error:
+    except (OSError, ValueError, TrackerProcessError, NobodyListensError) as error:
         print(f"soak: {error}", file=sys.stderr)
         return 2
 

@@ -79,6 +79,7 @@ class SoakCamera(Node):
     ) -> None:
         super().__init__("soak_camera")
         self._shots, self.rate, self._rng = shots, rate, rng
+        self.tracker = tracker
         self._chance = 1 / (box_every * rate)
         self._late = round(rate / 2)
         self._images = self.create_publisher(Image, "image", QOS)
@@ -97,7 +98,7 @@ class SoakCamera(Node):
         self.stretch = Stretch()
 
     def connected(self) -> bool:
-        """Whether camera and tracker found each other."""
+        """Whether the camera has found the tracker; see ``handshake`` for the other direction."""
         return all(self.count_publishers(s.topic_name) > 0 for s in self._inputs) and all(
             publisher.get_subscription_count() > 0 for publisher in (self._images, self._boxes)
         )

@@ -6,7 +6,7 @@ from __future__ import annotations
 
 import os
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 
 from rclpy.node import Node
 from rclpy.qos import QoSProfile, ReliabilityPolicy
@@ -20,6 +20,7 @@ from het_ros.tools.bag_messages import (
 )
 from het_ros.tools.bag_reader import BagError, BagReader, Recorded, header_stamp
 from het_ros.tools.bag_writer import TYPESTORE
+from het_ros.tools.handshake import LONGEST_SPIN, NobodyListensError, Spin
 from het_ros.tools.interrupt import StopRequest
 from het_ros.tools.message_types import check_types, message_class
 from het_ros.tracking.box import Box
@@ -32,14 +33,7 @@ PLAYED_TYPES = (
     "sensor_msgs/msg/RegionOfInterest",
 )
 QOS = QoSProfile(depth=10, reliability=ReliabilityPolicy.RELIABLE)
-LONGEST_SPIN = 0.05  # s; so long may Ctrl-C take to be noticed
 CATCH_UP = 0.8  # of the time between two messages is kept even when a play is late
-
-Spin = Callable[[float], None]
-
-
-class NobodyListensError(RuntimeError):
-    """Nobody subscribed to what was to be played."""
 
 
 def timeline(bag: BagReader, init: Box | None = None) -> Iterator[Recorded]:

@@ -24,10 +24,10 @@ from het_ros.tools.arguments import (
 )
 from het_ros.tools.bag_reader import BagReader
 from het_ros.tools.footage import open_footage
+from het_ros.tools.handshake import NobodyListensError
 from het_ros.tools.interrupt import StopRequest
 from het_ros.tools.make_bag import make_bag
 from het_ros.tools.play import play
-from het_ros.tools.player import NobodyListensError
 from het_ros.tools.report import ResultsFolder, remove_bag, write_report
 from het_ros.tools.summary import Summary
 from het_ros.tools.tracker_arguments import tracker_arguments

@@ -33,6 +33,8 @@ from std_msgs.msg import Header
 from het_ros.ros.debug_image import debug_message
 from het_ros.ros.messages import header_of, polygon_from_box, stamp_ns
 from het_ros.ros.status import status_values
+from het_ros.tools.handshake import meet
+from het_ros.tools.interrupt import StopRequest
 from het_ros.tools.tracker_process import find_tracker
 from het_ros.tracking.box import Box
 
@@ -80,7 +82,7 @@ class Camera(Node):
         self.own: list[float] = []
 
     def connected(self) -> bool:
-        """Whether camera and tracker found each other."""
+        """Whether the camera has found the tracker; see ``handshake`` for the other direction."""
         publishers = (self._images, self._boxes)
         return self.count_publishers("tracker/status") > 0 and all(
             publisher.get_subscription_count() > 0 for publisher in publishers
@@ -117,11 +119,14 @@ def send(reliable: bool, width: int, height: int, frames: int) -> dict[str, floa
     """What the camera's process does: send, and sum up the answers."""
     rclpy.init()
     camera = Camera(reliable)
-    end = time.monotonic() + PATIENCE
-    while not camera.connected():
-        rclpy.spin_once(camera, timeout_sec=0.05)
-        if time.monotonic() > end:
-            raise TimeoutError("camera and tracker did not find each other")
+    meet(
+        camera,
+        "tracker",
+        camera.connected,
+        lambda seconds: rclpy.spin_once(camera, timeout_sec=seconds),
+        PATIENCE,
+        StopRequest(),
+    )
     camera.run(width, height, frames)
     rclpy.shutdown()
     times = 1e3 * np.array(list(camera.answers.values()) or [np.nan])

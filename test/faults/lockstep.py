@@ -64,7 +64,7 @@ class LockStep:
         made = cls(graph, footage, graph.add(camera))
         made.reset = camera.create_client(Trigger, "tracker/reset")
         camera.create_subscription(DiagnosticArray, "/diagnostics", made._on_diagnostics, 10)
-        graph.spin_until(camera.connected, "discovery")
+        camera.meet(graph)
         return made
 
     def begin(self) -> None:

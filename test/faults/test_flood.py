@@ -140,7 +140,7 @@ def test_a_huge_picture_in_few_bytes(sequences, processes, local_graph):
     assert len(bomb) < 500_000
     tracker = processes("tracker", "--ros-args", "-p", "image_transport:=compressed")
     camera = local_graph.add(Camera(compressed=True, context=local_graph.context))
-    local_graph.spin_until(camera.connected, "discovery")
+    camera.meet(local_graph)
     footage = crossing(sequences)
 
     def jpeg(frame: int, stamp: int) -> CompressedImage:

@@ -8,7 +8,7 @@ from het_ros.faults.overload import overload
 def test_newest_wins_and_every_other_frame_is_counted(installed, own_environment):
     # With many features it is slow enough for any camera on the same machine.
     measured = overload((320, 240), 3.0, ("features:=300",))
-    assert measured["times"] > 1.5  # of what it can process; 3 where the camera gets there
+    assert 1.5 < measured["times"] < 3.1  # of what it can process; 3 where the camera gets there
     assert measured["answered"] < measured["sent"]
     # Every frame from the first on was processed or counted as dropped.
     assert measured["all_counted"] and measured["counts"]["dropped"] > 0

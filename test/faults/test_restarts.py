@@ -118,7 +118,7 @@ def test_a_tracker_that_is_killed_and_comes_back(processes, local_graph, sequenc
         local_graph.spin_until(
             lambda log=tracker.log: "active" in log.read_text(), "the tracker's start"
         )
-        local_graph.spin_until(camera.connected, "discovery")
+        camera.meet(local_graph)
         for messages in camera.got.values():
             messages.clear()
         camera.show(local_graph, image_message(pixels_of(footage, 0), header(stream[0].stamp)))

@@ -7,6 +7,7 @@ from __future__ import annotations
 import cv2
 import numpy as np
 from geometry_msgs.msg import Point32, PolygonStamped
+from graph import PATIENCE
 from rclpy.node import Node
 from rclpy.qos import QoSProfile, ReliabilityPolicy
 from sensor_msgs.msg import CompressedImage, Image
@@ -15,6 +16,8 @@ from std_msgs.msg import Header
 from het_ros.ros.messages import header_of
 from het_ros.ros.status import status_values
 from het_ros.ros.tracker_node import OUTPUTS, TrackerNode
+from het_ros.tools.handshake import meet
+from het_ros.tools.interrupt import StopRequest
 
 FRAME_TIME = 1 / 30  # s
 
@@ -107,8 +110,16 @@ class Camera(Node):
                 return
         raise AssertionError(f"no status for the image of {header.stamp}")
 
+    def meet(self, graph) -> None:
+        """Return when camera and tracker know each other; before that, images get lost."""
+
+        def spin(seconds: float) -> None:
+            graph.executor.spin_once(timeout_sec=seconds)
+
+        meet(self, "tracker", self.connected, spin, PATIENCE, StopRequest())
+
     def connected(self) -> bool:
-        """Whether the tracker hears this camera and this camera hears the tracker."""
+        """Whether this camera has found the tracker: enough for who sends no images."""
         return (
             self.images.get_subscription_count() > 0
             and self.boxes.get_subscription_count() > 0

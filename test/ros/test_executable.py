@@ -21,7 +21,7 @@ def test_follows_what_another_process_sends(processes, local_graph, made_footage
             context=local_graph.context, cli_args=["--ros-args", "-r", "image:=/camera/image_raw"]
         )
     )
-    local_graph.spin_until(camera.connected, "discovery")
+    camera.meet(local_graph)
     camera.show(local_graph, image_message(frames[0], header_at(1.0)))
     camera.boxes.publish(box_message(box, header_at(1.0)))
     local_graph.spin_until(lambda: camera.got["box"], "the first box")

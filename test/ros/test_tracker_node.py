@@ -37,7 +37,7 @@ def test_a_box_and_images_over_ros_give_box_pose_velocity_and_status(graph, made
     frames, box = made_footage
     graph.add(TrackerNode(context=graph.context))
     camera = graph.add(Camera(context=graph.context))
-    graph.spin_until(camera.connected, "discovery")
+    camera.meet(graph)
     header = header_at(5.0, "optical")
     camera.show(graph, image_message(frames[0], header))
     assert status_values(camera.got["status"][0])["state"] == "IDLE"
