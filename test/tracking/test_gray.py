@@ -6,7 +6,6 @@ import cv2
 import numpy as np
 import pytest
 
-from het_ros import Box
 from het_ros.tracking.config import TrackerConfig
 from het_ros.tracking.gray import bgr_of, deviation, gray_of, is_colourless
 from het_ros.tracking.tracker import HierarchicalEnsembleTracker
