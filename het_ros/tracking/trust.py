@@ -19,7 +19,7 @@ _RUNNING_RATE = 0.05  # of the means of the evidence, a frame
 _LONGEST_DOUBT = 0.5  # s; who is doubted for longer is not followed any more
 _RETURN_COLOUR = 0.6  # share of the colours' mean below which nobody comes back
 _TWIN_TEMPLATE = 0.75  # share of the score's mean that makes a rival a twin
-_TWIN_TIME = 1.2  # s after a twin was beside the target in which it may be either
+_TWIN_TIME = 1.2  # s in which it may be either: after a twin, or a return far off
 _FAR = 0.7  # target sides from the prediction; a target that comes back there ...
 _RETURN_FAR = 0.85  # ... must be recognised with this probability
 _AWAY = 5  # frames hidden, from which on it is a return when somebody is seen again
@@ -134,6 +134,10 @@ class Trust:
             self.state = State.LOST if lost else State.COASTING
             self.score = 0.0 if lost else min(self.score, 0.5)
             return verdict
+        if self.hidden_frames >= _AWAY and relative.moved > _FAR:
+            # Who looks the same may have come out elsewhere: time will tell.
+            self._since_twin = 0.0
+            self.score = min(self.score, 0.5)
         unsure = self._returns_unsure(relative)
         self._since_return = 0.0 if unsure else self._since_return + dt
         self.hidden_for = 0.0

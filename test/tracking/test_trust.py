@@ -291,6 +291,24 @@ def test_light_that_changed_for_good_is_the_light_in_the_end():
     assert verdicts[-20:] == [Verdict.SEEN] * 20
 
 
+@pytest.mark.parametrize(
+    ("moved", "hidden", "sure"), [(0.3, 20, True), (1.0, 20, False), (1.0, 3, True)]
+)
+def test_who_comes_back_far_off_is_not_a_confident_box_for_a_while(moved, hidden, sure):
+    """Somebody in the same clothes may have come out elsewhere."""
+    trust = grown_up()
+    for _ in range(hidden):
+        trust.judge(GONE, 1 / 30)
+    trust.judge(replace(GOOD, moved=moved), 1 / 30)
+    assert trust.state is State.TRACKING
+    scores = [trust.score]
+    for _ in range(60):
+        trust.judge(GOOD, 1 / 30)
+        scores.append(trust.score)
+    assert (min(scores[:30]) > 0.5) is sure
+    assert min(scores[40:]) > 0.5
+
+
 UNSURE = Evidence(template=0.75, colour=0.7, rival=0.6, moved=0.5, away=0.5)
 
 
