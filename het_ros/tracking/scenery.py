@@ -111,8 +111,7 @@ class Scenery:
             return False
         size = np.array([box.w, box.h])
         place = np.array([box.x, box.y]) - self._at
-        latest_first = self._miniatures.copy()
-        latest_first.reverse()
+        latest_first = tuple(reversed(self._miniatures))
         before = [
             (one, place + one.at)
             for one in latest_first

@@ -111,7 +111,8 @@ class Trust:
         Args:
             evidence: of the best place of this frame.
             dt: time since the last frame, s.
-            witnessed: False where another sensor sees something else there.
+            witnessed: False where another sensor sees something else there, or what is there
+                stood there before the target came.
         """
         self._frames += 1
         if self._colour is None:

@@ -90,14 +90,19 @@ class View:
 
     def colours(self, pixels: Image) -> Image:
         """Pixels (H, W, 3) or (H, W), gray or in colour and in the light of the first image."""
-        pixels = gray_of(pixels) if self.gray else bgr_of(pixels)
+        pixels = self._in_kind(pixels)
         return self._light.undo(pixels) if self._light else pixels
+
+    def _in_kind(self, pixels: Image) -> Image:
+        return gray_of(pixels) if self.gray else bgr_of(pixels)
 
     def _as_at_first(self, window: Window, elsewhere: bool) -> Window:
         """The window, gray or in colour as the first, without jumps of light since then."""
+        pixels = self._in_kind(window.pixels)
         if self._light:
             if elsewhere:
                 self._light.forget()
             else:
-                self._light.observe(gray_of(window.pixels) if self.gray else bgr_of(window.pixels))
-        return replace(window, pixels=self.colours(window.pixels))
+                self._light.observe(pixels)
+            pixels = self._light.undo(pixels)
+        return replace(window, pixels=pixels)
