@@ -16,6 +16,7 @@ from het_ros.tracking import combination, flow_prior, target, view
 from het_ros.tracking.base_ensembles import NaiveBayes
 from het_ros.tracking.box import Box
 from het_ros.tracking.camera import CameraMotion
+from het_ros.tracking.centring import Centring
 from het_ros.tracking.colour import ColourModel
 from het_ros.tracking.compressive import CompressiveFeatures
 from het_ros.tracking.config import TrackerConfig
@@ -46,6 +47,7 @@ _PLACES: tuple[tuple[str, Any, str], ...] = (
     ("peak", combination, "combine"),
     ("scenery", Scenery, "shows"),
     ("scenery", Scenery, "remember"),
+    ("centring", Centring, "observe"),
     ("learn", RidgeEnsembles, "learn"),
     ("learn", NaiveBayes, "learn"),
     ("learn", NaiveBayes, "likelihood"),

@@ -111,14 +111,26 @@ def cell_means(likelihood: Plane, cell: int) -> Plane:
     return np.asarray(cv2.resize(whole, (columns, rows), interpolation=cv2.INTER_AREA), np.float32)
 
 
-def box_means(likelihood: Plane, size: tuple[int, int], shape: tuple[int, int]) -> Plane:
+def box_means(
+    likelihood: Plane,
+    size: tuple[int, int],
+    shape: tuple[int, int],
+    offset: Corner = (0.0, 0.0),
+) -> Plane:
     """Mean likelihood in the boxes of ``size`` (w, h) with their corners at the first places.
 
     Args:
         likelihood: (H, W) float32.
         size: (w, h) of the target, px of ``likelihood``.
         shape: (rows, columns) of places asked for.
+        offset: (x, y) of the boxes' corners from the places, px of ``likelihood``.
     """
+    if offset != (0.0, 0.0):
+        shift = np.array([[1, 0, -offset[0]], [0, 1, -offset[1]]])
+        moved = cv2.warpAffine(
+            likelihood, shift, likelihood.shape[::-1], borderMode=cv2.BORDER_REPLICATE
+        )
+        likelihood = np.asarray(moved, np.float32)
     means = cv2.boxFilter(
         likelihood, cv2.CV_32F, size, anchor=(0, 0), borderType=cv2.BORDER_REPLICATE
     )

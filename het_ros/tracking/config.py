@@ -123,6 +123,9 @@ class TrackerConfig:
     colour_rate: float = parameter(
         0.02, "weight of the new frame in the colour histograms", low=0, high=1
     )
+    centring: bool = parameter(
+        True, "move the box to where the target's colours are: a start box may lie beside it"
+    )
     flow_weight: float = parameter(
         0.25,
         "how much a place gains by optical flow in the dense votes; 0 is without",
@@ -269,6 +272,7 @@ class TrackerConfig:
             weight_low=0.1,
             weight_high=0.9,
             colour_weight=0.0,
+            centring=False,
             flow_weight=0.0,
             camera_motion=False,
             light_jumps=False,

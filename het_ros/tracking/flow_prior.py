@@ -35,12 +35,14 @@ class FlowPrior:
     def __init__(self, config: TrackerConfig, cells: tuple[float, float]) -> None:
         self._weight = config.flow_weight
         self._cell = config.cell
-        self._cells = np.array(cells)
+        self._side = math.sqrt(cells[0] * cells[1])
         self._before: Sight | None = None
         self._trusted = 1.0
         self._in_sight_for = math.inf
 
-    def over(self, window: Window, expected: Floats, shape: tuple[int, int]) -> Prior:
+    def over(
+        self, window: Window, expected: Floats, shape: tuple[int, int], middle: Floats
+    ) -> Prior:
         """What a place's vote is multiplied by: (rows, columns) float32, 1 and more.
 
         It multiplies: a post that slides over the target moves smoothly too, but does not look
@@ -49,15 +51,16 @@ class FlowPrior:
         Args:
             window: this frame's search window, its places in cells.
             expected: (x, y) of the target by the motion model, image px; flow starts there.
-            shape: (rows, columns) of the places of the target's corner.
+            shape: (rows, columns) of the places.
+            middle: (x, y), cells, from a place to the centre of a target there.
         """
         flow = self._flow(window, expected)
         if flow is None:
             return np.ones(shape, np.float32)
-        corner = window.to_window(flow.centre) - self._cells / 2
-        sigma = _SIGMA * math.sqrt(self._cells.prod())
-        down = np.exp(-0.5 * ((np.arange(shape[0]) - corner[1]) / sigma) ** 2)
-        across = np.exp(-0.5 * ((np.arange(shape[1]) - corner[0]) / sigma) ** 2)
+        place = window.to_window(flow.centre) - middle
+        sigma = _SIGMA * self._side
+        down = np.exp(-0.5 * ((np.arange(shape[0]) - place[1]) / sigma) ** 2)
+        across = np.exp(-0.5 * ((np.arange(shape[1]) - place[0]) / sigma) ** 2)
         weight = self._weight * self._trusted * flow.share
         return np.asarray(1 + weight * np.outer(down, across), np.float32)
 

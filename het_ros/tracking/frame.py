@@ -15,6 +15,7 @@ from het_ros.tracking.window import Window
 
 Image = NDArray[np.uint8]
 Floats = NDArray[np.float64]
+Plane = NDArray[np.float32]
 
 
 @dataclass(frozen=True)
@@ -39,11 +40,12 @@ class Measurement:
     """What bottom and middle layer make of a frame.
 
     Attributes:
-        corner: y_COM, the target's corner, cells of the window.
+        corner: y_COM, the corner of the sub-patches' layout, cells of the window.
         patch_corners: p (Q, 2), where the sub-patches were found, cells.
         omega: (Q,) weights of the sub-patches.
         evidence: raw evidence for the place, or None where nothing judges it.
         scores: (Q, rows, columns) of the base ensembles.
+        likelihood: (H, W) of the colours in the window, in cells, or None without them.
     """
 
     corner: Floats
@@ -51,3 +53,4 @@ class Measurement:
     omega: Floats
     evidence: Evidence | None
     scores: Features
+    likelihood: Plane | None = None

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from het_ros.tracking import combination
 from het_ros.tracking.base_ensembles import detect, scores_at
 from het_ros.tracking.box import Box
+from het_ros.tracking.centring import Centring
 from het_ros.tracking.colour import box_means, cell_means
 from het_ros.tracking.colour_search import ColourSearch
 from het_ros.tracking.compressive import Features
@@ -63,6 +64,7 @@ class Target:
         rng = np.random.default_rng(config.seed)
         self._cells, unit = grid(config, box)
         check_cost(config, self._cells)
+        self._half = np.array(self._cells) / 2
         self._radius = config.search_radius / config.cell
         self._sub_patches = draw_sub_patches(
             (self._cells[0], self._cells[1]), config.sub_patches, config.sub_patch_fraction, rng
@@ -70,6 +72,8 @@ class Target:
         self._view = View(config, image, box, self._cells, unit, self._sub_patches.size, rng)
         self._ensembles = base_ensembles(config, self._cells)
         self._colour = colour_model(config, self._cells)
+        centring = config.centring and config.colour_weight and config.trust
+        self._centring = Centring(self._cells) if centring else None
         self._size = Size(config, box, self._cells)
         self._trust = Trust(config) if config.trust else None
         self._motion = motion_model(config, box)
@@ -203,11 +207,12 @@ class Target:
         patch_columns, patch_rows = self._sub_patches.size
         rows = scores.shape[1] - (round(self._cells[1]) - patch_rows)
         columns = scores.shape[2] - (round(self._cells[0]) - patch_columns)
-        colour = np.zeros((rows, columns), np.float32)
+        colour, likelihood = np.zeros((rows, columns), np.float32), None
         if config.colour_weight:
             likelihood = cell_means(self._colour.likelihood(frame.window.pixels), config.cell)
-            colour = box_means(likelihood, whole(self._cells), (rows, columns))
-        prior = self._flow.over(frame.window, self._motion.centre, colour.shape)
+            x, y = self._offset.tolist()
+            colour = box_means(likelihood, whole(self._cells), (rows, columns), (x, y))
+        prior = self._flow.over(frame.window, self._motion.centre, colour.shape, self._middle)
         offsets = self._sub_patches.offsets.astype(np.intp)
         apart_x, apart_y = (max(2, round(_RIVAL_APART * cells)) for cells in self._cells)
         apart = (apart_x, apart_y)
@@ -215,7 +220,7 @@ class Target:
         omega = np.clip(peak.patch_scores, config.weight_low, config.weight_high)
         evidence = self._evidence(frame, peak, omega)
         corners = self._sub_patches.corners(peak.corner)
-        return Measurement(peak.corner, corners, omega, evidence, scores)
+        return Measurement(peak.corner, corners, omega, evidence, scores, likelihood)
 
     def _evidence(self, frame: Frame, peak: Peak, omega: Floats) -> Evidence:
         """What speaks for a peak; distances in target sides."""
@@ -237,14 +242,16 @@ class Target:
         if self._trust:
             if verdict is Verdict.SEEN:
                 chosen = np.ones(self._config.sub_patches, bool)
-                ratio = self._size.follow(frame.planes, self._centre_of(found.corner), dt)
+                ratio = self._size.follow(frame.planes, found.corner + self._half, dt)
                 self._learn(frame, found.corner, chosen, ratio)
+                if self._centring and found.likelihood is not None:
+                    self._centring.observe(found.likelihood, self._centre_of(found.corner))
             return self._trust.score
         target = self._corner_in(frame.window)
         corners = self._sub_patches.corners(target)
         score = self._ensembles.likelihood(frame.features, corners)
         chosen = to_be_updated(scores_at(found.scores, corners))
-        ratio = self._size.follow(frame.planes, self._centre_of(target), dt)
+        ratio = self._size.follow(frame.planes, target + self._half, dt)
         self._learn(frame, target, chosen, ratio)
         return score
 
@@ -255,17 +262,27 @@ class Target:
         config = self._config
         self._ensembles.learn(frame.features, self._sub_patches.corners(corner), chosen)
         if config.colour_weight:
-            x, y = corner * config.cell
+            x, y = (corner + self._offset) * config.cell
             self._colour.learn(frame.window.pixels, (float(x), float(y)))
-        self._size.learn(frame.planes, self._centre_of(corner), ratio)
+        self._size.learn(frame.planes, corner + self._half, ratio)
+
+    @property
+    def _offset(self) -> Floats:
+        """(x, y), cells, of the target's centre from that of the sub-patches' layout."""
+        return self._centring.offset if self._centring else np.zeros(2)
+
+    @property
+    def _middle(self) -> Floats:
+        """(x, y), cells, from the layout's corner to the target's centre."""
+        return self._half + self._offset
 
     def _centre_of(self, corner: Floats) -> Floats:
-        """The centre of a target with its corner there, cells."""
-        return corner + np.array(self._cells) / 2
+        """The centre of a target with the layout's corner there, cells."""
+        return corner + self._middle
 
     def _corner_in(self, window: Window) -> Floats:
-        """The target's corner by the motion model, cells of the window."""
-        return window.to_window(np.array([self.box.x, self.box.y]))
+        """The layout's corner by the motion model, cells of the window."""
+        return window.to_window(np.array([self.box.x, self.box.y])) - self._offset
 
     def _patches(self, window: Window, found: Measurement) -> tuple[Patch, ...]:
         """The sub-patches where they were found, in image px."""

@@ -12,6 +12,7 @@ CONFIG = TrackerConfig(cell=2, flow_weight=0.25)
 CELLS = (16.0, 16.0)
 BOX = Box(40.0, 40.0, 32.0, 32.0)
 CENTRE = np.array(BOX.centre)
+MIDDLE = np.array(CELLS) / 2
 SHAPE = (45, 45)  # places of the target's corner in the window, cells
 
 
@@ -34,7 +35,7 @@ def shifted(image, dx, dy):
 def test_the_place_where_the_pixels_went_weighs_most(picture, shift):
     prior = FlowPrior(CONFIG, CELLS)
     prior.remember(window_of(picture), BOX, 1 / 30)
-    weights = prior.over(window_of(shifted(picture, *shift)), CENTRE, SHAPE)
+    weights = prior.over(window_of(shifted(picture, *shift)), CENTRE, SHAPE, MIDDLE)
     row, column = np.unravel_index(weights.argmax(), SHAPE)
     assert (column, row) == ((40 + shift[0]) / 2, (40 + shift[1]) / 2)
     assert weights.min() >= 1
@@ -46,7 +47,7 @@ def test_without_flow_all_places_weigh_the_same(picture):
     off = FlowPrior(TrackerConfig(cell=2, flow_weight=0.0), CELLS)
     off.remember(window_of(picture), BOX, 1 / 30)
     for prior in (unknown, off):
-        assert (prior.over(window_of(picture), CENTRE, SHAPE) == 1).all()
+        assert (prior.over(window_of(picture), CENTRE, SHAPE, MIDDLE) == 1).all()
 
 
 def test_who_is_just_back_is_not_followed_by_flow_at_once(picture):
@@ -55,7 +56,7 @@ def test_who_is_just_back_is_not_followed_by_flow_at_once(picture):
     used = []
     for _ in range(6):
         prior.remember(window_of(picture), BOX, 0.25)
-        used.append(prior.over(window_of(picture), CENTRE, SHAPE).max() > 1)
+        used.append(prior.over(window_of(picture), CENTRE, SHAPE, MIDDLE).max() > 1)
     assert used == [False] * 4 + [True] * 2
 
 
@@ -64,5 +65,7 @@ def test_flow_from_a_doubtful_place_weighs_less(picture, score, share):
     prior, sure = FlowPrior(CONFIG, CELLS), FlowPrior(CONFIG, CELLS)
     prior.remember(window_of(picture), BOX, 1 / 30, score)
     sure.remember(window_of(picture), BOX, 1 / 30)
-    gained, most = (p.over(window_of(picture), CENTRE, SHAPE).max() - 1 for p in (prior, sure))
+    gained, most = (
+        p.over(window_of(picture), CENTRE, SHAPE, MIDDLE).max() - 1 for p in (prior, sure)
+    )
     assert gained == pytest.approx(share * most, abs=1e-6)
