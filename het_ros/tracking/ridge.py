@@ -22,11 +22,17 @@ Floats = NDArray[np.float64]
 Features = NDArray[np.floating[Any]]
 
 
+# A single frame is a poor sample of a target: of the first frames after it, the n-th is learnt
+# _EARLY / (n + _AFTER) times as fast as later ones, until that is 1.
+_EARLY, _AFTER = 33, 10
+
+
 class RidgeEnsembles:
     """Linear base ensembles F_q(l) = a_q . [l, 1], fitted in closed form.
 
     Args:
-        learning_rate: weight of the new frame in the running statistics, 0..1.
+        learning_rate: weight of the new frame in the running statistics, 0..1; of the frames
+            soon after the first it is more.
         ridge: regularisation, in units of a standardised feature's variance.
         label_sigma: (in x, in y) deviation of the Gaussian labels, px of the maps.
         emphasis: a place weighs 1 + ``emphasis`` times its largest label. There are thousands
@@ -49,6 +55,7 @@ class RidgeEnsembles:
         self._label_sigma = label_sigma
         self._emphasis = emphasis
         self._first_frame = first_frame
+        self._frames = 0  # learnt after the first
         self._first: tuple[Features, Features] | None = None  # Gram matrix and moments
         self._gram: Features = np.empty((0, 0))  # (m + 1, m + 1)
         self._moment: Features = np.empty((0, 0))  # (m + 1, Q)
@@ -80,7 +87,9 @@ class RidgeEnsembles:
             self._first = gram, moment
             self._gram, self._moment = gram.copy(), moment.copy()
         else:
-            rate = self._learning_rate
+            self._frames += 1
+            early = max(1, _EARLY / (self._frames + _AFTER))
+            rate = min(1, early * self._learning_rate)
             fresh = rate * (1 - self._first_frame)
             first_gram, first_moment = self._first
             self._gram *= 1 - rate

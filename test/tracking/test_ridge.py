@@ -73,18 +73,19 @@ def test_the_first_fit_is_weighted_least_squares(ridge, emphasis):
 
 
 @pytest.mark.parametrize("kept", [0.0, 0.1, 1.0])
-def test_statistics_run_on_at_the_learning_rate(kept):
+@pytest.mark.parametrize(("rate", "frames"), [(0.02, 3), (0.02, 30), (0.5, 3)])
+def test_statistics_run_on_at_the_learning_rate(kept, rate, frames):
     """Frames blended weigh as their samples do, all at once, with the weights of the blend."""
-    rate = 0.25
     fast = ensembles(rate, first_frame=kept)
-    samples, shares = [], np.array([1.0, 0.0, 0.0])
-    for frame in range(3):
+    samples, shares = [], np.eye(frames)[0]
+    for frame in range(frames):
         fast.learn(maps(frame), CORNERS + frame / 2, EVERYONE)
         samples.append(slow_samples(maps(frame), CORNERS + frame / 2, 6.0))
         if frame:
-            shares *= 1 - rate
-            shares[frame] += rate * (1 - kept)
-            shares[0] += rate * kept
+            new = min(1, rate * max(1, 33 / (frame + 10)))  # the first ones weigh more
+            shares *= 1 - new
+            shares[frame] += new * (1 - kept)
+            shares[0] += new * kept
     design, labels = (np.vstack([sample[k] for sample in samples]) for k in (0, 1))
     weights = np.concatenate(
         [share * sample[2] for share, sample in zip(shares, samples, strict=True)]
