@@ -5,7 +5,9 @@
 Score maps say which places look like the target; they do not know that it was next door one frame
 ago. Optical flow (pyramidal Lucas-Kanade) of points in its box knows nothing else. Points count
 where the flow back leads to where they came from (the forward-backward error of MedianFlow:
-Kalal, Mikolajczyk, Matas, 2010), and the median of their ways is the target's.
+Kalal, Mikolajczyk, Matas, 2010), and the median of their ways is the target's. A box holds
+background as well, and one beside its target more of it than of the target: where enough points go
+another way together than what is around the box, they are the target's and the others are not.
 """
 
 from __future__ import annotations
@@ -30,6 +32,9 @@ _STOP = (cv2.TERM_CRITERIA_COUNT + cv2.TERM_CRITERIA_EPS, 10, 0.03)
 _THERE_AND_BACK = 1.0  # px, error of the flow back
 _TOGETHER = 0.1  # target sides from the median: farther off a point is not the target's
 _FEWEST = 8  # points
+_RING_GRID, _RING = 7, 1.5  # points a side around the box, on a rectangle so much larger
+_APART = 0.04  # target sides from the way of what is around: it goes another way
+_OWN = 0.2  # of all points in the box: fewer that go another way may be an arm
 
 
 @dataclass(frozen=True)
@@ -53,7 +58,7 @@ class Flow:
 
     Attributes:
         centre: (x, y) of the target, image px.
-        share: of the points that agree, 0..1.
+        share: of the target's points that agree, 0..1.
     """
 
     centre: Floats
@@ -72,6 +77,7 @@ def trace(before: Sight, window: Window, gray: NDArray[np.uint8], moved: Floats)
     Returns:
         Where the target went, or None where fewer than 8 points agree.
     """
+    inside = _GRID**2
     start = _points(before)
     scale = np.array(before.window.scale)
     places = before.window.to_image(start.astype(np.float64)) + moved
@@ -79,23 +85,54 @@ def trace(before: Sight, window: Window, gray: NDArray[np.uint8], moved: Floats)
     there, found = _lucas_kanade(before.gray, gray, start, guess)
     back, returned = _lucas_kanade(gray, before.gray, there, there - (guess - start))
     error = np.hypot(*(back - start).T)
-    shifts = (there - guess)[found & returned & (error < _THERE_AND_BACK)]
-    if len(shifts) < _FEWEST:
+    good = found & returned & (error < _THERE_AND_BACK)
+    shifts = there - guess
+    side = float(np.sqrt(before.box.area * scale.prod()))
+    in_box = shifts[:inside][good[:inside]]
+    own = without_background(in_box, shifts[inside:][good[inside:]], side)
+    if len(own) < _FEWEST:
         return None
-    shift = np.median(shifts, axis=0)
-    side = np.sqrt(before.box.area * scale.prod())
-    agree = np.abs(shifts - shift).max(axis=1) < _TOGETHER * side
+    shift = np.median(own, axis=0)
+    agree = np.abs(own - shift).max(axis=1) < _TOGETHER * side
     centre = np.array(before.box.centre) + moved + shift / np.array(window.scale)
-    return Flow(centre, float(agree.sum() / len(start)))
+    background = len(in_box) - len(own)
+    return Flow(centre, float(agree.sum() / (inside - background)))
+
+
+def without_background(shifts: Points, around: Points, side: float) -> Points:
+    """Of the ways of the points in a box those that are the target's, or all of them.
+
+    Args:
+        shifts: (N, 2) float32, px.
+        around: (M, 2) float32, px, of points around the box.
+        side: sqrt(w h) of the target, px.
+    """
+    if len(around) < _FEWEST:
+        return shifts
+    background = np.median(around, axis=0)
+    spread = float(np.median(np.abs(around - background).max(axis=1)))
+    apart = np.abs(shifts - background).max(axis=1) > max(_APART * side, 2 * spread)
+    own = shifts[apart]
+    if len(own) < _OWN * _GRID**2:
+        return shifts
+    together = np.abs(own - np.median(own, axis=0)).max(axis=1) < _TOGETHER * side
+    return own if together.sum() >= _OWN * _GRID**2 else shifts
 
 
 def _points(sight: Sight) -> Points:
-    """(N, 2) float32, window px: a grid in the middle of the target's box."""
-    line = np.linspace(-0.5, 0.5, _GRID) * _CORE
+    """(N, 2) float32, window px: a grid in the middle of the target's box, then a ring around."""
+    grid = _grid(_GRID) * _CORE
+    ring = _grid(_RING_GRID)
+    ring = ring[np.abs(ring).max(axis=1) == 0.5] * _RING
     box = sight.box
-    x, y = np.meshgrid(box.centre[0] + line * box.w, box.centre[1] + line * box.h)
-    places = sight.window.to_window(np.stack([x.ravel(), y.ravel()], axis=1))
-    return np.asarray(places, np.float32)
+    places = np.array(box.centre) + np.concatenate([grid, ring]) * (box.w, box.h)
+    return np.asarray(sight.window.to_window(places), np.float32)
+
+
+def _grid(side: int) -> Floats:
+    """(side^2, 2): evenly spaced places (x, y) of a square from -0.5 to 0.5."""
+    line = np.linspace(-0.5, 0.5, side)
+    return np.stack(np.meshgrid(line, line), axis=-1).reshape(-1, 2)
 
 
 def _lucas_kanade(

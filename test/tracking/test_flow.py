@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from het_ros import Box
-from het_ros.tracking.flow import Sight, trace
+from het_ros.tracking.flow import Sight, trace, without_background
 from het_ros.tracking.gray import gray_of
 from het_ros.tracking.window import cut_window
 
@@ -74,3 +74,40 @@ def test_a_flat_picture_and_a_gray_one():
     window = window_at(flat, 100.0, 70.0)
     flow = trace(sight(flat), window, gray_of(window.pixels), np.zeros(2))
     assert flow is None or np.isfinite(flow.centre).all()
+
+
+@pytest.mark.parametrize("camera", [(0.0, 0.0), (-3.0, 1.0)])
+def test_background_in_the_box_is_not_followed(camera):
+    """A target that fills two fifths of its box goes its own way over the background."""
+    image, target = picture(), picture(3)[:, :16]
+    moved, after = (5.0, -3.0), shifted(image, *camera)
+    image[100:180, 154:170] = target[100:180]
+    after[100 - 3 : 180 - 3, 154 + 5 : 170 + 5] = target[100:180]
+    window = window_at(after, 100.0, 70.0)
+    flow = trace(sight(image), window, gray_of(window.pixels), np.zeros(2))
+    assert flow is not None
+    np.testing.assert_allclose(flow.centre, np.add(BOX.centre, moved), atol=0.5)
+
+
+STILL, AWAY = np.zeros((24, 2), np.float32), np.full((60, 2), 4.0, np.float32)
+APART = np.stack([np.linspace(-30, 30, 60), np.full(60, 9.0)], axis=1).astype(np.float32)
+
+
+@pytest.mark.parametrize(
+    ("own", "around", "left"),
+    [
+        (AWAY, STILL, 60),  # what goes another way is the target
+        (AWAY[:25], STILL, 25),
+        (AWAY[:15], STILL, 15 + 40),  # an arm
+        (APART, STILL, 60 + 40),  # they do not go together
+        (AWAY, STILL[:5], 60 + 40),  # nothing is known of the background
+        (AWAY, np.concatenate([STILL[:12] - 9, STILL[:12] + 9]), 60 + 40),  # nor here
+    ],
+)
+def test_whose_ways_are_the_targets(own, around, left):
+    with_background = np.concatenate([own, np.zeros((40, 2), np.float32)])
+    assert len(without_background(with_background, around, 40.0)) == left
+
+
+def test_who_stands_still_with_everything_keeps_all_points():
+    assert len(without_background(np.zeros((100, 2), np.float32), STILL, 40.0)) == 100
