@@ -88,7 +88,13 @@ def test_there_is_no_floor_without_a_working_resolution():
 
 @pytest.mark.parametrize(
     ("config", "idle"),
-    [(SMALL, set()), (TrackerConfig.paper(), {"camera", "colour", "flow", "scale", "scenery"})],
+    [
+        (SMALL, set()),
+        (
+            TrackerConfig.paper(),
+            {"camera", "centring", "colour", "flow", "scale", "scenery"},
+        ),
+    ],
 )
 def test_every_stage_that_a_configuration_has_takes_time(config, idle, footage):
     found = stage_times(config, footage, middle(footage, (24, 40)), frames=2, warm_up=1)
