@@ -14,7 +14,8 @@ import cv2
 import numpy as np
 
 from het_ros.tracking.colour import box_means
-from het_ros.tracking.frame import Floats, Plane
+from het_ros.tracking.frame import Floats
+from het_ros.tracking.gray import Plane
 from het_ros.tracking.layers import Cells, whole
 
 _KEPT = 0.93  # a frame, of the map: 14 frames or so
@@ -26,7 +27,9 @@ _LEAST_SOFTNESS = 0.01
 # collars, shadows and who else wears its colours. The slopes of the true centre over what is found
 # on disturbed starts are about 0.9 and 0.5.
 _BELIEVED = np.array([0.9, 0.4])
-_SLOW, _SLOWEST = 1 / 33, 0.005  # a frame: something that covers half must not move it soon
+# Frame n goes 1 / (n + _SLOW) of the way, at least _SLOWEST: what covers half moves it late.
+_SLOW = 33
+_SLOWEST = 0.005
 _FARTHEST = 0.25  # target's width and height
 
 
@@ -66,7 +69,7 @@ class Centring:
         found = best_place(contrast(self._sum / self._weight, self._size))
         farthest = _FARTHEST * np.array(self._size)
         wanted = np.clip(_BELIEVED * (self.offset + found), -farthest, farthest)
-        rate = max(1 / (self._frames + 1 / _SLOW), _SLOWEST)
+        rate = max(1 / (self._frames + _SLOW), _SLOWEST)
         self.offset = self.offset + rate * (wanted - self.offset)
 
 

@@ -24,17 +24,29 @@ from het_ros.tracking.window import Window
 Floats = NDArray[np.float64]
 Points = NDArray[np.float32]
 
-_GRID = 10  # points a side
-_CORE = 0.8  # the points lie in this part of the box
+_GRID, _CORE = 10, 0.8  # points a side in the box, in this part of it
+_RING_GRID, _RING = 7, 1.5  # points a side around the box, on a rectangle so much larger
 _PATCH = (13, 13)  # px around a point that are compared
 _LEVELS = 2  # of the pyramid above the window itself
 _STOP = (cv2.TERM_CRITERIA_COUNT + cv2.TERM_CRITERIA_EPS, 10, 0.03)
 _THERE_AND_BACK = 1.0  # px, error of the flow back
 _TOGETHER = 0.1  # target sides from the median: farther off a point is not the target's
 _FEWEST = 8  # points
-_RING_GRID, _RING = 7, 1.5  # points a side around the box, on a rectangle so much larger
 _APART = 0.04  # target sides from the way of what is around: it goes another way
-_OWN = 0.2  # of all points in the box: fewer that go another way may be an arm
+_FEWEST_OWN = 20  # points: fewer that go another way may be an arm
+
+
+def _grid(side: int) -> Floats:
+    """(side^2, 2): evenly spaced places (x, y) of a square from -0.5 to 0.5."""
+    line = np.linspace(-0.5, 0.5, side)
+    return np.stack(np.meshgrid(line, line), axis=-1).reshape(-1, 2)
+
+
+_IN_BOX = _grid(_GRID) * _CORE
+_SQUARE = _grid(_RING_GRID)
+_AROUND = _SQUARE[np.abs(_SQUARE).max(axis=1) == 0.5] * _RING
+# (N, 2), in units of the box's width and height from its centre.
+_PLACES = np.concatenate([_IN_BOX, _AROUND])
 
 
 @dataclass(frozen=True)
@@ -77,7 +89,7 @@ def trace(before: Sight, window: Window, gray: NDArray[np.uint8], moved: Floats)
     Returns:
         Where the target went, or None where fewer than 8 points agree.
     """
-    inside = _GRID**2
+    inside = len(_IN_BOX)
     start = _points(before)
     scale = np.array(before.window.scale)
     places = before.window.to_image(start.astype(np.float64)) + moved
@@ -113,26 +125,17 @@ def without_background(shifts: Points, around: Points, side: float) -> Points:
     spread = float(np.median(np.abs(around - background).max(axis=1)))
     apart = np.abs(shifts - background).max(axis=1) > max(_APART * side, 2 * spread)
     own = shifts[apart]
-    if len(own) < _OWN * _GRID**2:
+    if len(own) < _FEWEST_OWN:
         return shifts
     together = np.abs(own - np.median(own, axis=0)).max(axis=1) < _TOGETHER * side
-    return own if together.sum() >= _OWN * _GRID**2 else shifts
+    return own if together.sum() >= _FEWEST_OWN else shifts
 
 
 def _points(sight: Sight) -> Points:
-    """(N, 2) float32, window px: a grid in the middle of the target's box, then a ring around."""
-    grid = _grid(_GRID) * _CORE
-    ring = _grid(_RING_GRID)
-    ring = ring[np.abs(ring).max(axis=1) == 0.5] * _RING
+    """(N, 2) float32, window px: those in the target's box, then those around it."""
     box = sight.box
-    places = np.array(box.centre) + np.concatenate([grid, ring]) * (box.w, box.h)
+    places = np.array(box.centre) + _PLACES * (box.w, box.h)
     return np.asarray(sight.window.to_window(places), np.float32)
-
-
-def _grid(side: int) -> Floats:
-    """(side^2, 2): evenly spaced places (x, y) of a square from -0.5 to 0.5."""
-    line = np.linspace(-0.5, 0.5, side)
-    return np.stack(np.meshgrid(line, line), axis=-1).reshape(-1, 2)
 
 
 def _lucas_kanade(
