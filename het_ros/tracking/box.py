@@ -47,6 +47,13 @@ class Box:
         """Area, px^2."""
         return self.w * self.h
 
+    def turned(self, angle: float) -> Box:
+        """Upright box around the ellipse that fills this one, turned by ``angle``, rad."""
+        cosine, sine = math.cos(angle), math.sin(angle)
+        width = math.hypot(self.w * cosine, self.h * sine)
+        height = math.hypot(self.w * sine, self.h * cosine)
+        return Box.from_centre(*self.centre, width, height)
+
     def as_tuple(self) -> tuple[float, float, float, float]:
         """(x, y, w, h), px."""
         return self.x, self.y, self.w, self.h

@@ -123,6 +123,7 @@ class TrackerConfig:
     colour_rate: float = parameter(
         0.02, "weight of the new frame in the colour histograms", low=0, high=1
     )
+    rotation: bool = parameter(True, "follow how the target is turned in the image")
     centring: bool = parameter(
         True, "move the box to where the target's colours are: a start box may lie beside it"
     )
@@ -272,6 +273,7 @@ class TrackerConfig:
             weight_low=0.1,
             weight_high=0.9,
             colour_weight=0.0,
+            rotation=False,
             centring=False,
             flow_weight=0.0,
             camera_motion=False,

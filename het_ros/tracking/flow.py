@@ -56,7 +56,7 @@ class Sight:
     Attributes:
         window: search window, places counted in px.
         gray: (H, W) uint8, its pixels.
-        box: the target, image px.
+        box: the target, image px, as it is in the window: turned as that is.
     """
 
     window: Window
@@ -106,7 +106,8 @@ def trace(before: Sight, window: Window, gray: NDArray[np.uint8], moved: Floats)
         return None
     shift = np.median(own, axis=0)
     agree = np.abs(own - shift).max(axis=1) < _TOGETHER * side
-    centre = np.array(before.box.centre) + moved + shift / np.array(window.scale)
+    expected = window.to_window(np.array(before.box.centre) + moved)
+    centre = window.to_image(expected + shift)
     background = len(in_box) - len(own)
     return Flow(centre, float(agree.sum() / (inside - background)))
 
@@ -134,8 +135,8 @@ def without_background(shifts: Points, around: Points, side: float) -> Points:
 def _points(sight: Sight) -> Points:
     """(N, 2) float32, window px: those in the target's box, then those around it."""
     box = sight.box
-    places = np.array(box.centre) + _PLACES * (box.w, box.h)
-    return np.asarray(sight.window.to_window(places), np.float32)
+    centre = sight.window.to_window(np.array(box.centre))
+    return np.asarray(centre + _PLACES * (box.w, box.h) * np.array(sight.window.scale), np.float32)
 
 
 def _lucas_kanade(

@@ -65,8 +65,9 @@ class FlowPrior:
         return np.asarray(1 + weight * np.outer(down, across), np.float32)
 
     def remember(self, window: Window, box: Box, dt: float, score: float = 1.0) -> None:
-        """The target is in sight: it is in ``box``, image px, ``dt`` s after the last frame.
+        """The target is in sight, ``dt`` s after the last frame.
 
+        It is in ``box``, image px, which is turned around its centre as the window is.
         The lower the ``score`` of that, the less its pixels say: they may be a post's that slides
         over it.
         """

@@ -9,6 +9,12 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from het_ros.tracking.box import Box
+from het_ros.tracking.estimate import Patch
+from het_ros.tracking.window import Window
+
+Floats = NDArray[np.float64]
+
 
 @dataclass(frozen=True)
 class SubPatches:
@@ -33,6 +39,23 @@ class SubPatches:
         put back into the layout of the first frame.
         """
         return target + self.offsets
+
+    def in_image(self, window: Window, corners: Floats, weights: Floats) -> tuple[Patch, ...]:
+        """The sub-patches where they were found, as upright boxes in image px.
+
+        Args:
+            window: that they were found in, its places in working px.
+            corners: (Q, 2), working px.
+            weights: (Q,), in the combination.
+        """
+        size = np.array(self.size)
+        width, height = (size / np.array(window.scale)).tolist()
+        box = Box.from_centre(0, 0, width, height).turned(window.angle)
+        centres = window.to_image(corners + size / 2).tolist()
+        return tuple(
+            Patch(Box.from_centre(x, y, box.w, box.h), weight)
+            for (x, y), weight in zip(centres, weights.tolist(), strict=True)
+        )
 
 
 def draw_sub_patches(

@@ -31,6 +31,7 @@ from het_ros.tracking.layers import (
     whole,
 )
 from het_ros.tracking.response import Peak, find_peak
+from het_ros.tracking.rotation import Rotation
 from het_ros.tracking.scenery import Scenery
 from het_ros.tracking.search import by_colour, other_size, search_centre
 from het_ros.tracking.size import Size
@@ -75,6 +76,8 @@ class Target:
         centring = config.centring and config.colour_weight and config.trust
         self._centring = Centring(self._cells) if centring else None
         self._size = Size(config, box, self._cells)
+        sides = [cells * config.cell for cells in self._cells]
+        self._rotation = Rotation(*sides) if config.rotation else None
         self._trust = Trust(config) if config.trust else None
         self._motion = motion_model(config, box)
         self._flow = FlowPrior(config, self._cells)
@@ -98,12 +101,14 @@ class Target:
         self._motion.predict(dt)
         step = self._motion.step(dt)
         self._go_with_camera(image, step)
+        if self._rotation:
+            self._rotation.predict(step)
         frame, found = self._search(image)
         centre = frame.window.to_image(self._centre_of(found.corner))
         verdict = Verdict.SEEN
         hidden = bool(self._trust and self._trust.hidden_frames)
         if self._trust and found.evidence:
-            box = self._size.box(centre, frame.growth)
+            box = self._box(centre, frame.growth)
             witnessed = witness is None or witness(box)
             if witnessed and self._scenery:
                 witnessed = not self._scenery.shows(image, box)
@@ -112,6 +117,8 @@ class Target:
             self._motion.coast()
             if self._inertia:
                 self._inertia.forget()
+            if self._rotation:
+                self._rotation.coast()
         else:
             if hidden:
                 self._motion.restart(centre)
@@ -124,23 +131,38 @@ class Target:
                 self._colour_search.forget()
             self._seen_at = centre
             self._size.growth = frame.growth
+            if self._rotation:
+                place = self._centre_of(found.corner) * self._config.cell
+                self._rotation.observe(frame.window.pixels, place, step)
         if not self._trust and not self.box.touches_image(image.shape[1], image.shape[0]):
             return self.estimate(0.0, State.LOST)
         score = self._update_model(frame, found, verdict, step)
         if verdict is Verdict.HIDDEN:
             self._flow.forget()
         else:
-            self._flow.remember(frame.window, self.box, step, score)
+            upright = self._size.box(self._motion.centre)
+            self._flow.remember(frame.window, upright, step, score)
             if self._scenery:
                 self._scenery.remember(image, self.box, step)
         state = self._trust.state if self._trust else State.TRACKING
-        patches = () if verdict is Verdict.HIDDEN else self._patches(frame.window, found)
+        found_at = self._sub_patches.in_image(frame.window, found.patch_corners, found.omega)
+        patches = () if verdict is Verdict.HIDDEN else found_at
         return self.estimate(score, state, patches)
 
     @property
     def box(self) -> Box:
         """The target's box by the motion model, px."""
-        return self._size.box(self._motion.centre)
+        return self._box(self._motion.centre)
+
+    def _box(self, centre: Floats, growth: float | None = None) -> Box:
+        """The upright box around the target at ``centre``, px, turned as it is now."""
+        box = self._size.box(centre, growth)
+        return box.turned(self._angle) if self._angle else box
+
+    @property
+    def _angle(self) -> float:
+        """rad, clockwise: how far windows are turned."""
+        return self._rotation.angle if self._rotation else 0.0
 
     def estimate(self, score: float, state: State, patches: tuple[Patch, ...] = ()) -> Estimate:
         """What the motion model holds, as an estimate."""
@@ -162,16 +184,24 @@ class Target:
     def _search(self, image: Image) -> tuple[Frame, Measurement]:
         """Look for the target; for one that is hidden for long also elsewhere at another size."""
         hidden = self._trust.hidden_frames if self._trust else 0
-        first = self._look_for(image, hidden, 1.0)
+        first = self._look_for(image, hidden, 1.0, self._angle)
+        if self._rotation and self._angle and not hidden:
+            upright = self._look_for(image, hidden, 1.0)
+            if _shape_of(upright) <= _shape_of(first):
+                return first
+            self._rotation.forget()
+            return upright
         size = other_size(hidden, self._trust.hidden_for) if self._trust else None
         if size is None:
             return first
-        second = self._look_for(image, hidden + 1, size)
+        second = self._look_for(image, hidden + 1, size, self._angle)
         assert self._trust and first[1].evidence and second[1].evidence
         surely = self._trust.is_surely_back(second[1].evidence, first[1].evidence)
         return second if surely else first
 
-    def _look_for(self, image: Image, hidden: int, size: float) -> tuple[Frame, Measurement]:
+    def _look_for(
+        self, image: Image, hidden: int, size: float, angle: float = 0.0
+    ) -> tuple[Frame, Measurement]:
         """One look at the place that is ``hidden``'s turn, at ``size`` times the present size."""
         growth = self._size.growth * size
         reach = self._view.reach(growth)
@@ -181,7 +211,7 @@ class Target:
             centre = self._colour_search.next_place(image, colours, self._colour, box, reach)
         else:
             centre = search_centre(hidden, self._motion.centre, self._seen_at, reach)
-        frame = self._view.look(image, centre, growth, elsewhere=hidden > 0)
+        frame = self._view.look(image, centre, growth, elsewhere=hidden > 0, angle=angle)
         return frame, self._measure(frame)
 
     def _measure(self, frame: Frame) -> Measurement:
@@ -265,6 +295,8 @@ class Target:
             x, y = (corner + self._offset) * config.cell
             self._colour.learn(frame.window.pixels, (float(x), float(y)))
         self._size.learn(frame.planes, corner + self._half, ratio)
+        if self._rotation:
+            self._rotation.learn(frame.window.pixels, self._centre_of(corner) * config.cell)
 
     @property
     def _offset(self) -> Floats:
@@ -282,13 +314,10 @@ class Target:
 
     def _corner_in(self, window: Window) -> Floats:
         """The layout's corner by the motion model, cells of the window."""
-        return window.to_window(np.array([self.box.x, self.box.y])) - self._offset
+        return window.to_window(self._motion.centre) - self._middle
 
-    def _patches(self, window: Window, found: Measurement) -> tuple[Patch, ...]:
-        """The sub-patches where they were found, in image px."""
-        width, height = (np.array(self._sub_patches.size) / np.array(window.scale)).tolist()
-        corners = window.to_image(found.patch_corners).tolist()
-        return tuple(
-            Patch(Box(x, y, width, height), weight)
-            for (x, y), weight in zip(corners, found.omega.tolist(), strict=True)
-        )
+
+def _shape_of(look: tuple[Frame, Measurement]) -> float:
+    """Mean score of the sub-patches in a look, 0 where nothing judges it."""
+    evidence = look[1].evidence
+    return evidence.template if evidence else 0.0

@@ -17,7 +17,7 @@ from het_ros.tracking.frame import Floats, Frame, Image
 from het_ros.tracking.gray import bgr_of, gray_of, is_colourless
 from het_ros.tracking.layers import Cells, compressive_features
 from het_ros.tracking.light import Light
-from het_ros.tracking.window import Window, cut_window
+from het_ros.tracking.window import Window, cut_window, turned
 
 
 class View:
@@ -61,7 +61,14 @@ class View:
         """(x, y), image px: how far from a window's centre the target is found in it."""
         return np.asarray(self._radius * self._unit * growth)
 
-    def look(self, image: Image, centre: Floats, growth: float, elsewhere: bool = False) -> Frame:
+    def look(
+        self,
+        image: Image,
+        centre: Floats,
+        growth: float,
+        elsewhere: bool = False,
+        angle: float = 0.0,
+    ) -> Frame:
         """The window with every place at which a sub-patch is looked for, and its maps.
 
         Args:
@@ -69,10 +76,11 @@ class View:
             centre: (x, y) of the window, image px.
             growth: size at which the target is looked for, over that of its first box.
             elsewhere: whether it shows another place than the last window did.
+            angle: rad, clockwise, that the window is turned by.
         """
         margin = math.ceil(self._radius) + (0 if self._at_working_resolution else 1)
         unit = self._unit * growth
-        corner = centre - self._size * growth / 2 - margin * unit
+        corner = centre - turned(self._size * growth / 2 + margin * unit, angle)
         width, height = (math.ceil(cells) + 2 * margin for cells in self._cells)
         scale = self._cell / unit
         window = cut_window(
@@ -82,6 +90,7 @@ class View:
             width * self._cell,
             height * self._cell,
             (float(scale[0]), float(scale[1])),
+            angle,
         )
         window = self._as_at_first(window, elsewhere)
         planes = channel_stack(window.pixels, self._channels, self._cell)

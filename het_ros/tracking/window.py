@@ -28,23 +28,34 @@ class Window:
         pixels: (H, W, 3) or (H, W) uint8; a view of the image where that is possible.
         origin: image px (x, y) of the window's top-left corner.
         scale: window px per image px (in x, in y).
+        angle: rad, clockwise as one looks at the image, how far the window is turned around its
+            corner.
     """
 
     pixels: NDArray[np.uint8]
     origin: tuple[float, float]
     scale: tuple[float, float]
+    angle: float = 0.0
 
     def to_window(self, points: Points) -> Points:
         """Image px (..., 2) to window px (..., 2)."""
-        return np.asarray((points - np.array(self.origin)) * np.array(self.scale))
+        return np.asarray(turned(points - np.array(self.origin), -self.angle) * self.scale)
 
     def to_image(self, points: Points) -> Points:
         """Window px (..., 2) to image px (..., 2)."""
-        return np.asarray(points / np.array(self.scale) + np.array(self.origin))
+        return np.asarray(turned(points / np.array(self.scale), self.angle) + self.origin)
 
     def in_cells(self, cell: float) -> Window:
         """The same window with places counted in cells of ``cell`` px."""
         return replace(self, scale=(self.scale[0] / cell, self.scale[1] / cell))
+
+
+def turned(vectors: Points, angle: float) -> Points:
+    """Vectors (..., 2) turned by ``angle``, rad, clockwise as one looks at the image."""
+    if angle == 0:
+        return vectors
+    cosine, sine = math.cos(angle), math.sin(angle)
+    return np.asarray(vectors @ np.array([[cosine, sine], [-sine, cosine]]))
 
 
 def cut_window(
@@ -54,25 +65,29 @@ def cut_window(
     width: int,
     height: int,
     scale: tuple[float, float] = (1.0, 1.0),
+    angle: float = 0.0,
 ) -> Window:
     """Cut a window out of an image; only its own pixels are read, resized or copied.
 
     Args:
         image: (H, W, 3) or (H, W) uint8.
-        x: left side, image px. At scale 1 the window starts on the whole px at or before it.
-        y: top side, image px, likewise.
+        x: top-left corner, image px. At scale 1 an upright window starts on the whole px at or
+            before it.
+        y: the same corner, image px, likewise.
         width: width of the window, window px.
         height: height of the window, window px.
         scale: window px per image px (in x, in y).
+        angle: rad, clockwise, that it is turned by around that corner.
 
     Returns:
         The window. Beyond the image's border the last pixel is repeated, also where the window
         lies wholly outside.
     """
-    if scale == (1.0, 1.0):
+    if scale == (1.0, 1.0) and angle == 0:
         left, top = math.floor(x), math.floor(y)
         return Window(_crop(image, left, top, width, height), (left, top), scale)
-    return Window(_resample(image, x, y, width, height, scale), (x, y), scale)
+    pixels = _resample(image, x, y, width, height, scale, angle)
+    return Window(pixels, (x, y), scale, angle)
 
 
 def _resample(
@@ -82,10 +97,15 @@ def _resample(
     width: int,
     height: int,
     scale: tuple[float, float],
+    angle: float,
 ) -> NDArray[np.uint8]:
     """The window at a resolution of its own, its corner at (x, y) to a fraction of a px."""
-    columns = _inside(math.floor(x) - 1, math.ceil(width / scale[0]) + 3, image.shape[1])[0]
-    rows = _inside(math.floor(y) - 1, math.ceil(height / scale[1]) + 3, image.shape[0])[0]
+    corners = np.array([[0, 0], [width, 0], [0, height], [width, height]]) / np.array(scale)
+    corners = turned(corners, angle)
+    left, top = (corners.min(axis=0) + np.array([x, y])).tolist()
+    wide, high = np.ptp(corners, axis=0).tolist()
+    columns = _inside(math.floor(left) - 1, math.ceil(wide) + 3, image.shape[1])[0]
+    rows = _inside(math.floor(top) - 1, math.ceil(high) + 3, image.shape[0])[0]
     source = image[rows, columns]
     # How many image px one source px stands for, in x and in y.
     coarse_x = coarse_y = 1.0
@@ -100,12 +120,11 @@ def _resample(
         source = np.asarray(
             cv2.resize(_thinned(source, step), size, interpolation=cv2.INTER_AREA), np.uint8
         )
-    to_source = np.array(
-        [
-            [1 / scale[0] / coarse_x, 0, (x - columns.start + 0.5 / scale[0]) / coarse_x - 0.5],
-            [0, 1 / scale[1] / coarse_y, (y - rows.start + 0.5 / scale[1]) / coarse_y - 0.5],
-        ]
-    )
+    # Columns: a window px to the right, one down, and the centre of the first one.
+    steps = turned(np.diag([1 / scale[0], 1 / scale[1]]), angle)
+    first = steps.sum(axis=0) / 2 + (x - columns.start, y - rows.start)
+    coarse = np.array([[coarse_x], [coarse_y]])
+    to_source = np.column_stack([*steps, first]) / coarse - [[0, 0, 0.5]]
     resampled = cv2.warpAffine(
         source,
         to_source,

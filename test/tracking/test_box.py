@@ -29,6 +29,16 @@ def test_centre_and_back():
 
 
 @pytest.mark.parametrize(
+    ("degrees", "size"),
+    [(0, (20, 80)), (90, (80, 20)), (-90, (80, 20)), (180, (20, 80)), (45, (58.3, 58.3))],
+)
+def test_turned_stays_upright_around_its_centre(degrees, size):
+    turned = Box.from_centre(5, -7, 20, 80).turned(math.radians(degrees))
+    assert turned.centre == pytest.approx((5, -7))
+    assert (turned.w, turned.h) == pytest.approx(size, abs=0.1)
+
+
+@pytest.mark.parametrize(
     ("box", "touches"),
     [
         (Box(10, 10, 5, 5), True),

@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Windows at a resolution of their own, against each px looked up by itself."""
 
+import cv2
 import numpy as np
 import pytest
 
@@ -37,6 +38,35 @@ def test_a_finer_window_is_interpolated(noise, at, scale, gray):
             np.testing.assert_allclose(
                 window.pixels[row, column], slow_bilinear(image, x, y), atol=4
             )
+
+
+@pytest.mark.parametrize("degrees", [-170, -33, 0.5, 20, 90])
+@pytest.mark.parametrize("at", [(61.3, 42.8), (-4.4, 50.1), (150.0, 110.0)], ids=str)
+def test_a_turned_window_is_interpolated(noise, at, degrees):
+    """Each px lies where ``to_image`` says, and its place leads back."""
+    window = cut_window(noise, *at, 24, 18, (1.5, 1.2), np.radians(degrees))
+    assert window.pixels.shape[:2] == (18, 24)
+    cosine, sine = np.cos(np.radians(degrees)), np.sin(np.radians(degrees))
+    for row in range(0, 18, 4):
+        for column in range(0, 24, 4):
+            right, down = (column + 0.5) / 1.5, (row + 0.5) / 1.2
+            x, y = at[0] + cosine * right - sine * down, at[1] + sine * right + cosine * down
+            np.testing.assert_allclose(
+                window.pixels[row, column], slow_bilinear(noise, x - 0.5, y - 0.5), atol=4
+            )
+            place = window.to_image(np.array([column + 0.5, row + 0.5]))
+            np.testing.assert_allclose(place, (x, y))
+            np.testing.assert_allclose(window.to_window(place), (column + 0.5, row + 0.5))
+
+
+def test_a_coarse_turned_window_is_averaged():
+    """A picture turned by a quarter and cut out turned by a quarter is as it was."""
+    noise = np.random.default_rng(2).integers(0, 256, (20, 20, 3), np.uint8)
+    image = cv2.resize(noise, (400, 400), interpolation=cv2.INTER_LINEAR)
+    upright = cut_window(image, 40.0, 60.0, 40, 30, (0.125, 0.125)).pixels
+    clockwise = np.ascontiguousarray(np.rot90(image, -1))
+    window = cut_window(clockwise, 400.0 - 60.0, 40.0, 40, 30, (0.125, 0.125), np.pi / 2)
+    np.testing.assert_allclose(window.pixels.astype(int), upright, atol=16)
 
 
 @pytest.mark.parametrize("scale", [0.5, 0.25, 0.12])
