@@ -13,6 +13,7 @@ from typing import Any
 
 from het_ros.bench.footage import Footage
 from het_ros.tracking import combination, flow_prior, target, view
+from het_ros.tracking.angle_filter import AngleFilter
 from het_ros.tracking.base_ensembles import NaiveBayes
 from het_ros.tracking.box import Box
 from het_ros.tracking.camera import CameraMotion
@@ -48,6 +49,9 @@ _PLACES: tuple[tuple[str, Any, str], ...] = (
     ("scenery", Scenery, "shows"),
     ("scenery", Scenery, "remember"),
     ("centring", Centring, "observe"),
+    ("rotation", AngleFilter, "spectrum"),
+    ("rotation", AngleFilter, "turn"),
+    ("rotation", AngleFilter, "learn"),
     ("learn", RidgeEnsembles, "learn"),
     ("learn", NaiveBayes, "learn"),
     ("learn", NaiveBayes, "likelihood"),

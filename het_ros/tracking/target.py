@@ -23,13 +23,7 @@ from het_ros.tracking.estimate import Estimate, Patch, State
 from het_ros.tracking.flow_prior import FlowPrior
 from het_ros.tracking.frame import Floats, Frame, Image, Measurement
 from het_ros.tracking.inertia import Inertia
-from het_ros.tracking.layers import (
-    base_ensembles,
-    colour_model,
-    grid,
-    motion_model,
-    whole,
-)
+from het_ros.tracking.layers import base_ensembles, colour_model, grid, motion_model, whole
 from het_ros.tracking.response import Peak, find_peak
 from het_ros.tracking.rotation import Rotation
 from het_ros.tracking.scenery import Scenery
@@ -114,26 +108,9 @@ class Target:
                 witnessed = not self._scenery.shows(image, box)
             verdict = self._trust.judge(found.evidence, step, witnessed)
         if verdict is Verdict.HIDDEN:
-            self._motion.coast()
-            if self._inertia:
-                self._inertia.forget()
-            if self._rotation:
-                self._rotation.coast()
+            self._coast()
         else:
-            if hidden:
-                self._motion.restart(centre)
-            else:
-                self._motion.correct(centre, float(found.omega.mean()))
-            if self._inertia:
-                side = self._size.side(self._size.growth)
-                self._motion.change_velocity(self._inertia.observe(centre, side, step))
-            if self._colour_search:
-                self._colour_search.forget()
-            self._seen_at = centre
-            self._size.growth = frame.growth
-            if self._rotation:
-                place = self._centre_of(found.corner) * self._config.cell
-                self._rotation.observe(frame.window.pixels, place, step)
+            self._move_to(centre, frame, found, step, hidden)
         if not self._trust and not self.box.touches_image(image.shape[1], image.shape[0]):
             return self.estimate(0.0, State.LOST)
         score = self._update_model(frame, found, verdict, step)
@@ -145,9 +122,37 @@ class Target:
             if self._scenery:
                 self._scenery.remember(image, self.box, step)
         state = self._trust.state if self._trust else State.TRACKING
-        found_at = self._sub_patches.in_image(frame.window, found.patch_corners, found.omega)
-        patches = () if verdict is Verdict.HIDDEN else found_at
+        patches = self._sub_patches.in_image(frame.window, found.patch_corners, found.omega)
+        if verdict is Verdict.HIDDEN:
+            patches = ()
         return self.estimate(score, state, patches)
+
+    def _coast(self) -> None:
+        """The target is not there: go on as predicted."""
+        self._motion.coast()
+        if self._inertia:
+            self._inertia.forget()
+        if self._rotation:
+            self._rotation.coast()
+
+    def _move_to(
+        self, centre: Floats, frame: Frame, found: Measurement, dt: float, hidden: bool
+    ) -> None:
+        """The target is at ``centre``, px; ``hidden``: it was not seen in the last frame."""
+        if hidden:
+            self._motion.restart(centre)
+        else:
+            self._motion.correct(centre, float(found.omega.mean()))
+        if self._inertia:
+            side = self._size.side(self._size.growth)
+            self._motion.change_velocity(self._inertia.observe(centre, side, dt))
+        if self._colour_search:
+            self._colour_search.forget()
+        self._seen_at = centre
+        self._size.growth = frame.growth
+        if self._rotation:
+            place = self._centre_of(found.corner) * self._config.cell
+            self._rotation.observe(frame.window.pixels, place, dt)
 
     @property
     def box(self) -> Box:
@@ -186,7 +191,7 @@ class Target:
         hidden = self._trust.hidden_frames if self._trust else 0
         first = self._look_for(image, hidden, 1.0, self._angle)
         if self._rotation and self._angle and not hidden:
-            upright = self._look_for(image, hidden, 1.0)
+            upright = self._look_for(image, hidden, 1.0, again=True)
             if _shape_of(upright) <= _shape_of(first):
                 return first
             self._rotation.forget()
@@ -200,7 +205,7 @@ class Target:
         return second if surely else first
 
     def _look_for(
-        self, image: Image, hidden: int, size: float, angle: float = 0.0
+        self, image: Image, hidden: int, size: float, angle: float = 0.0, again: bool = False
     ) -> tuple[Frame, Measurement]:
         """One look at the place that is ``hidden``'s turn, at ``size`` times the present size."""
         growth = self._size.growth * size
@@ -211,7 +216,7 @@ class Target:
             centre = self._colour_search.next_place(image, colours, self._colour, box, reach)
         else:
             centre = search_centre(hidden, self._motion.centre, self._seen_at, reach)
-        frame = self._view.look(image, centre, growth, elsewhere=hidden > 0, angle=angle)
+        frame = self._view.look(image, centre, growth, angle, hidden > 0, again)
         return frame, self._measure(frame)
 
     def _measure(self, frame: Frame) -> Measurement:

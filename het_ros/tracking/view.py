@@ -66,8 +66,9 @@ class View:
         image: Image,
         centre: Floats,
         growth: float,
-        elsewhere: bool = False,
         angle: float = 0.0,
+        elsewhere: bool = False,
+        again: bool = False,
     ) -> Frame:
         """The window with every place at which a sub-patch is looked for, and its maps.
 
@@ -75,8 +76,9 @@ class View:
             image: (H, W, 3) or (H, W) uint8.
             centre: (x, y) of the window, image px.
             growth: size at which the target is looked for, over that of its first box.
-            elsewhere: whether it shows another place than the last window did.
             angle: rad, clockwise, that the window is turned by.
+            elsewhere: whether it shows another place than the last window did.
+            again: whether the same place of the same image was just looked at, turned otherwise.
         """
         margin = math.ceil(self._radius) + (0 if self._at_working_resolution else 1)
         unit = self._unit * growth
@@ -92,7 +94,7 @@ class View:
             (float(scale[0]), float(scale[1])),
             angle,
         )
-        window = self._as_at_first(window, elsewhere)
+        window = self._as_at_first(window, elsewhere, again)
         planes = channel_stack(window.pixels, self._channels, self._cell)
         features = self._features.maps(integral_images(planes))
         return Frame(window.in_cells(self._cell), planes, features, growth)
@@ -105,13 +107,13 @@ class View:
     def _in_kind(self, pixels: Image) -> Image:
         return gray_of(pixels) if self.gray else bgr_of(pixels)
 
-    def _as_at_first(self, window: Window, elsewhere: bool) -> Window:
+    def _as_at_first(self, window: Window, elsewhere: bool, again: bool) -> Window:
         """The window, gray or in colour as the first, without jumps of light since then."""
         pixels = self._in_kind(window.pixels)
         if self._light:
             if elsewhere:
                 self._light.forget()
-            else:
+            elif not again:
                 self._light.observe(pixels)
             pixels = self._light.undo(pixels)
         return replace(window, pixels=pixels)
