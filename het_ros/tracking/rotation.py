@@ -18,6 +18,8 @@ from het_ros.tracking.gray import Pixels
 _ANGLE_GAIN, _SPIN_GAIN = 0.3, 0.03  # of an alpha-beta filter, a frame
 _ANGLES_KNOWN = 15  # frames after which the angle filter has seen enough to be believed in full
 _SPIN_KEPT = 0.9  # a frame
+_LEAST_DT = 0.01  # s: stamps that come in bursts would make a spin of an error
+_FASTEST = 2 * math.pi  # rad/s
 _UPRIGHT = 0.015  # of the angle, a frame: who was upright at first mostly is ...
 _UPRIGHT_WITHIN = math.radians(40)  # ... but who turns on and on is not held back any more
 _HIDDEN_ANGLE_KEPT = 0.97  # a frame
@@ -66,7 +68,8 @@ class Rotation:
         self._estimate += _ANGLE_GAIN * error
         within = min(max(self._estimate, -_UPRIGHT_WITHIN), _UPRIGHT_WITHIN)
         self._estimate -= _UPRIGHT * within
-        self._spin = self._spin * _SPIN_KEPT + _SPIN_GAIN * error / dt
+        spin = self._spin * _SPIN_KEPT + _SPIN_GAIN * error / max(dt, _LEAST_DT)
+        self._spin = min(max(spin, -_FASTEST), _FASTEST)
 
     def learn(self, pixels: Pixels, centre: Floats) -> None:
         """Learn what the target looks like, turned as it was observed to be."""
@@ -84,3 +87,4 @@ class Rotation:
         """The target is hidden: it turns on more slowly, and back to how it was at first."""
         self._estimate *= _HIDDEN_ANGLE_KEPT
         self._spin *= _SPIN_KEPT
+        self._spectrum = None

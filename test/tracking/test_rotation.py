@@ -68,6 +68,17 @@ def test_a_hidden_target_turns_back():
     assert rotation.angle == 0
 
 
+def test_stamps_in_a_burst_make_no_spin():
+    """A frame a microsecond after the last one, and one that comes late."""
+    rotation, image = Rotation(*SIZE), picture()
+    rotation.learn(image, CENTRE)
+    for dt in [DT] * 20 + [1e-6] * 3 + [0.5]:
+        rotation.predict(dt)
+        rotation.observe(turned(image, 6), CENTRE, dt)
+        rotation.learn(turned(image, 6), CENTRE)
+    assert rotation.angle == 0
+
+
 def rolled(image, degrees):
     height, width = image.shape[:2]
     matrix = cv2.getRotationMatrix2D((width / 2, height / 2), degrees, 1.0)
