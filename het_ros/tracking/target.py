@@ -114,17 +114,16 @@ class Target:
         if not self._trust and not self.box.touches_image(image.shape[1], image.shape[0]):
             return self.estimate(0.0, State.LOST)
         score = self._update_model(frame, found, verdict, step)
+        patches: tuple[Patch, ...] = ()
         if verdict is Verdict.HIDDEN:
             self._flow.forget()
         else:
+            patches = self._sub_patches.in_image(frame.window, found.patch_corners, found.omega)
             upright = self._size.box(self._motion.centre)
             self._flow.remember(frame.window, upright, step, score)
             if self._scenery:
                 self._scenery.remember(image, self.box, step)
         state = self._trust.state if self._trust else State.TRACKING
-        patches = self._sub_patches.in_image(frame.window, found.patch_corners, found.omega)
-        if verdict is Verdict.HIDDEN:
-            patches = ()
         return self.estimate(score, state, patches)
 
     def _coast(self) -> None:
