@@ -23,8 +23,9 @@ from het_ros.tracking.compressive import CompressiveFeatures
 from het_ros.tracking.config import TrackerConfig
 from het_ros.tracking.motion import AdaptiveKalman
 from het_ros.tracking.ridge import RidgeEnsembles
-from het_ros.tracking.scale import ScaleFilter
 from het_ros.tracking.scenery import Scenery
+from het_ros.tracking.size import Size
+from het_ros.tracking.template import TemplateWriter
 from het_ros.tracking.tracker import HierarchicalEnsembleTracker
 
 # Stage, where its function lives, the function's name. None of them calls another of them.
@@ -55,8 +56,9 @@ _PLACES: tuple[tuple[str, Any, str], ...] = (
     ("learn", RidgeEnsembles, "learn"),
     ("learn", NaiveBayes, "learn"),
     ("learn", NaiveBayes, "likelihood"),
-    ("scale", ScaleFilter, "change"),
-    ("scale", ScaleFilter, "learn"),
+    ("scale", TemplateWriter, "write"),
+    ("scale", Size, "follow"),
+    ("scale", Size, "learn"),
     ("kalman", AdaptiveKalman, "predict"),
     ("kalman", AdaptiveKalman, "correct"),
     ("kalman", AdaptiveKalman, "coast"),

@@ -18,6 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from het_ros.tracking.gray import Pixels
+from het_ros.tracking.memory import Memory
 from het_ros.tracking.subpixel import parabola_offset
 
 Floats = NDArray[np.float64]
@@ -59,9 +60,8 @@ class AngleFilter:
         # An outer ring is longer than an inner one; the innermost is a point that turns nowhere.
         weight = (_OUTSIDE + (1 - _OUTSIDE) * inside) * np.sqrt(np.arange(_RINGS))
         self._weight = weight[:, 1:, None]
-        self._numerator: Spectrum | None = None  # (K, d), K = ANGLES // 2 + 1
-        self._energy: Floats = np.empty(0)  # (K,)
-        self._first: tuple[Spectrum, Floats] | None = None
+        # Numerator (K, d) and energy (K,), K = ANGLES // 2 + 1.
+        self._memory = Memory(_RATE, _FIRST_FRAME)
 
     def spectrum(self, pixels: Pixels, centre: Floats) -> Spectrum:
         """(K, d): what is around ``centre``, transformed over the angles.
@@ -88,10 +88,11 @@ class AngleFilter:
         Raises:
             RuntimeError: nothing was learnt.
         """
-        if self._numerator is None:
+        if not self._memory:
             raise RuntimeError("there is no target to compare with: call learn first")
-        energy = self._energy + _RIDGE * self._energy.mean() + _NOTHING
-        response = np.fft.irfft((self._numerator * spectrum).sum(axis=1) / energy, ANGLES)
+        numerator, energy = self._memory.values
+        energy = energy + _RIDGE * energy.mean() + _NOTHING
+        response = np.fft.irfft((numerator * spectrum).sum(axis=1) / energy, ANGLES)
         near = np.roll(response, _FARTHEST + 1)[: 2 * _FARTHEST + 3]
         best, straight = 1 + int(near[1:-1].argmax()), _FARTHEST + 1
         if near[best] <= near[straight]:
@@ -104,15 +105,7 @@ class AngleFilter:
         straight = spectrum * np.exp(1j * turn * frequencies)
         numerator = np.conj(straight) * _LABEL
         energy = (np.abs(straight) ** 2).sum(axis=1)
-        if self._numerator is None or self._first is None:
-            self._numerator, self._energy = numerator, energy
-            self._first = numerator, energy
-            return
-        share = _FIRST_FRAME
-        numerator = (1 - share) * numerator + share * self._first[0]
-        energy = (1 - share) * energy + share * self._first[1]
-        self._numerator = self._numerator + _RATE * (numerator - self._numerator)
-        self._energy = self._energy + _RATE * (energy - self._energy)
+        self._memory.learn(numerator, energy)
 
 
 def _circles(angles: int, rings: int, radius: float) -> tuple[Floats, Floats]:

@@ -22,6 +22,11 @@ Indices = NDArray[np.intp]
 class BaseEnsembles(Protocol):
     """What the tracker asks of a bottom layer."""
 
+    @property
+    def votes(self) -> Features | None:
+        """(m + 1, Q) of linear base ensembles: of each feature and of a constant; else None."""
+        ...
+
     def score_maps(self, features: Features) -> Features:
         """Scores (Q, rows, columns) of all sub-patches at all places of (m, rows, columns)."""
         ...
@@ -155,6 +160,10 @@ class NaiveBayes:
         # Buffers used again: of all places, and of those that samples are taken from.
         self._squares: Features = np.empty((0, 0))
         self._powers: Features = np.empty(0)
+
+    @property
+    def votes(self) -> None:
+        """None: a Gaussian's vote is not linear."""
 
     def score_maps(self, features: Features) -> Features:
         """F(l) = sum of f(l_i) (eq. strongClassifier) of every sub-patch at every place.

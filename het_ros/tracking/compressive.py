@@ -261,6 +261,17 @@ class CompressiveFeatures:
         self._sums(integrals)
         return self._maps
 
+    @property
+    def standard(self) -> tuple[Features, Features]:
+        """(m,) what is subtracted from each raw feature and (m,) what it is multiplied with then.
+
+        Raises:
+            RuntimeError: no window was seen.
+        """
+        if self._standard is None:
+            raise RuntimeError("features are standardised by the first window: call maps first")
+        return self._standard
+
     def _fit(self, raw: Features) -> tuple[Features, Features]:
         """Centre (m,) and scale (m,) of raw maps (m, rows, columns)."""
         deviation = raw.std(axis=(1, 2))

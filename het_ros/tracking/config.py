@@ -144,6 +144,12 @@ class TrackerConfig:
     scale_rate: float = parameter(
         0.02, "weight of the new frame in the scale filter", low=0, high=1
     )
+    size_regression: bool = parameter(
+        True, "half of what is believed of a change of size is regressed on all features together"
+    )
+    size_template: bool = parameter(
+        True, "draw the size to where the base ensembles score as they did at first (ridge)"
+    )
     growth_limit: float = parameter(
         0.42, "the target's size changes at most this fast", unit="1/s", low=0, high=100
     )
@@ -279,6 +285,8 @@ class TrackerConfig:
             camera_motion=False,
             light_jumps=False,
             scales=1,
+            size_regression=False,
+            size_template=False,
             acceleration=20.0,
             measurement_noise=0.05,
             trust=False,

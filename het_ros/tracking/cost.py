@@ -26,7 +26,7 @@ def check_cost(config: TrackerConfig, cells: tuple[float, float]) -> None:
 
 
 def megabytes(config: TrackerConfig, cells: tuple[float, float]) -> float:
-    """About what the search window and its maps take, MB; rather too much than too little.
+    """About what window, maps and template take, MB; rather too much than too little.
 
     Args:
         config: parameters.
@@ -41,4 +41,5 @@ def megabytes(config: TrackerConfig, cells: tuple[float, float]) -> float:
         + 16 * len(config.channels)
         + 16 * config.cell**2
     )
-    return (places * place + 16 * config.features**2) / 1e6
+    template = 4 * config.features * cells[0] * cells[1] if config.size_template else 0
+    return (places * place + 16 * config.features**2 + template) / 1e6

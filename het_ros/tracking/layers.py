@@ -17,6 +17,7 @@ from het_ros.tracking.config import TrackerConfig
 from het_ros.tracking.motion import AdaptiveKalman
 from het_ros.tracking.ridge import RidgeEnsembles
 from het_ros.tracking.scale import ScaleFilter
+from het_ros.tracking.size_regression import SizeRegression
 
 Cells = tuple[float, float]
 
@@ -82,6 +83,13 @@ def scale_filter(config: TrackerConfig, cells: Cells) -> ScaleFilter:
         config.scale_context,
         config.scale_rate,
         config.first_frame,
+    )
+
+
+def size_regression(config: TrackerConfig, cells: Cells) -> SizeRegression:
+    """The regression of the size of a target of ``cells`` (w, h)."""
+    return SizeRegression(
+        whole(cells), config.scale_context, config.scale_rate, config.first_frame
     )
 
 

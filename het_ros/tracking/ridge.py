@@ -62,13 +62,24 @@ class RidgeEnsembles:
         self._votes: Features = np.empty((0, 0))  # (m + 1, Q)
         self._rows: Features = np.empty((0, 0))  # (m + 1 + Q, places), used again
 
+    @property
+    def votes(self) -> Features:
+        """(m + 1, Q): a_q, one column a sub-patch, that of the constant 1 last.
+
+        Raises:
+            RuntimeError: nothing was learnt.
+        """
+        if self._first is None:
+            raise RuntimeError("the base ensembles know no target yet: call learn first")
+        return self._votes
+
     def score_maps(self, features: Features) -> Features:
         """F_q at every place: (Q, rows, columns), about 1 on the target and 0 elsewhere.
 
         Args:
             features: (m, rows, columns), standardised.
         """
-        votes = self._fitted()
+        votes = self.votes
         flat = features.reshape(len(features), -1)
         scores = votes[:-1].T @ flat
         scores += votes[-1][:, None]
@@ -100,11 +111,11 @@ class RidgeEnsembles:
             self._moment[:, chosen] += mixed[:, chosen]
         regular = self._gram.copy()
         regular.ravel()[:: len(regular) + 1] += self._ridge
-        self._votes = _solved(regular, self._moment)
+        self._votes = solved(regular, self._moment)
 
     def likelihood(self, features: Features, corners: Floats) -> float:
         """Mean score of the sub-patches at ``corners`` (Q, 2), cut to 0..1."""
-        votes = self._fitted()
+        votes = self.votes
         x, y = nearest_places(corners, features.shape[1:])
         values = (votes[:-1] * features[:, y, x]).sum(axis=0) + votes[-1]
         return float(np.clip(values.mean(), 0, 1))
@@ -146,13 +157,8 @@ class RidgeEnsembles:
         products = self._rows @ self._rows.T
         return products[: m + 1, : m + 1].copy(), products[: m + 1, m + 1 :].copy()
 
-    def _fitted(self) -> Features:
-        if self._first is None:
-            raise RuntimeError("the base ensembles know no target yet: call learn first")
-        return self._votes
 
-
-def _solved(matrix: Features, wanted: Features) -> Features:
+def solved(matrix: Features, wanted: Features) -> Features:
     """The solution of ``matrix`` (n, n), symmetric and positive, times x = ``wanted`` (n, Q)."""
     solved, votes = cv2.solve(matrix, wanted, flags=cv2.DECOMP_CHOLESKY)
     if not solved:

@@ -7,21 +7,23 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
 from het_ros.tracking.box import Box
 from het_ros.tracking.config import TrackerConfig
-from het_ros.tracking.layers import Cells, scale_filter
-from het_ros.tracking.scale import Planes
-
-Floats = NDArray[np.float64]
+from het_ros.tracking.grid_means import Floats, Planes
+from het_ros.tracking.layers import Cells, scale_filter, size_regression
+from het_ros.tracking.template import Template
+from het_ros.tracking.template_size import TemplateSize
 
 _SIZES_KNOWN = 15  # frames after which the scale filter has seen enough to be followed
 _SMALLEST_SIDE = 3.0  # px: below this a target is not shrunk any more
 
 
 class Size:
-    """Follows the target's size with the scale filter, as far as it is believed.
+    """Follows the target's size by up to three opinions, as far as they are believed.
+
+    The scale filter and the regression say what has changed and count half each; the template
+    draws slowly to where the size was right at first.
 
     Args:
         config: parameters.
@@ -37,6 +39,9 @@ class Size:
         self.first: Floats = np.array([box.w, box.h])
         self.growth = 1.0
         self._filter = scale_filter(config, cells) if config.scales > 1 else None
+        regressed = self._filter and config.size_regression
+        self._regression = size_regression(config, cells) if regressed else None
+        self._template = TemplateSize()
         self._limit = config.growth_limit
         self._frames = 0
 
@@ -49,17 +54,24 @@ class Size:
         """sqrt(w h), px, of the target's box at that growth."""
         return growth * math.sqrt(self.first.prod())
 
-    def follow(self, planes: Planes, centre: Floats, dt: float) -> float:
+    def follow(
+        self, planes: Planes, centre: Floats, dt: float, template: Template | None = None
+    ) -> float:
         """Take over the change of size in a frame; returns the ratio to the size before.
 
         Args:
             planes: C channels (H, W) uint8.
             centre: (x, y) of the target, px of the channels.
             dt: time since the last frame, s.
+            template: of the base ensembles, where they have one.
         """
         if self._filter is None:
             return 1.0
         ratio = self._filter.change(planes, centre)
+        if self._regression:
+            ratio = math.sqrt(ratio * self._regression.change(planes, centre))
+        if template:
+            ratio *= self._template.change(planes, centre, template)
         self._frames = min(self._frames + 1, _SIZES_KNOWN)
         fastest = math.exp(self._limit * dt * self._frames / _SIZES_KNOWN)
         ratio = min(max(ratio, 1 / fastest), fastest)
@@ -72,3 +84,5 @@ class Size:
         """Learn what the target looks like, ``ratio`` times as large as it was looked for."""
         if self._filter:
             self._filter.learn(planes, centre, ratio)
+        if self._regression:
+            self._regression.learn(planes, centre, ratio)

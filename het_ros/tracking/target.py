@@ -30,6 +30,7 @@ from het_ros.tracking.scenery import Scenery
 from het_ros.tracking.search import by_colour, other_size, search_centre
 from het_ros.tracking.size import Size
 from het_ros.tracking.sub_patches import draw_sub_patches, to_be_updated
+from het_ros.tracking.template import TemplateWriter
 from het_ros.tracking.trust import Evidence, Trust, Verdict
 from het_ros.tracking.view import View
 from het_ros.tracking.window import Window
@@ -82,6 +83,10 @@ class Target:
         by_colours = config.colour_search and config.colour_weight
         self._colour_search = ColourSearch() if by_colours else None
         frame = self._view.look(image, self._seen_at, 1.0)
+        self._writer = None
+        if config.size_template and config.scales > 1:
+            features, planes = self._view.features, len(frame.planes)
+            self._writer = TemplateWriter(features, self._sub_patches, planes, self._cells)
         self._learn(frame, self._corner_in(frame.window), np.ones(config.sub_patches, bool), 1.0)
 
     def follow(self, image: Image, dt: float, witness: Witness | None = None) -> Estimate:
@@ -276,7 +281,7 @@ class Target:
         if self._trust:
             if verdict is Verdict.SEEN:
                 chosen = np.ones(self._config.sub_patches, bool)
-                ratio = self._size.follow(frame.planes, found.corner + self._half, dt)
+                ratio = self._follow_size(frame, found.corner, dt)
                 self._learn(frame, found.corner, chosen, ratio)
                 if self._centring and found.likelihood is not None:
                     self._centring.observe(found.likelihood, self._centre_of(found.corner))
@@ -285,9 +290,15 @@ class Target:
         corners = self._sub_patches.corners(target)
         score = self._ensembles.likelihood(frame.features, corners)
         chosen = to_be_updated(scores_at(found.scores, corners))
-        ratio = self._size.follow(frame.planes, target + self._half, dt)
+        ratio = self._follow_size(frame, target, dt)
         self._learn(frame, target, chosen, ratio)
         return score
+
+    def _follow_size(self, frame: Frame, corner: Floats, dt: float) -> float:
+        """Take over the change of size; returns the ratio to the size before."""
+        votes = self._ensembles.votes if self._writer else None
+        template = self._writer.write(votes) if self._writer and votes is not None else None
+        return self._size.follow(frame.planes, corner + self._half, dt, template)
 
     def _learn(
         self, frame: Frame, corner: Floats, chosen: NDArray[np.bool_], ratio: float

@@ -34,6 +34,7 @@ class View:
 
     Attributes:
         gray: whether the target is followed without colour, as its first image has none.
+        features: the compressive features it is looked at in.
     """
 
     def __init__(
@@ -54,7 +55,7 @@ class View:
         self._radius = config.search_radius / config.cell
         self.gray = is_colourless(image, config.gray_below)
         self._channels = names_for(config.channels, self.gray)
-        self._features = compressive_features(config, sub_patch, len(self._channels), rng)
+        self.features = compressive_features(config, sub_patch, len(self._channels), rng)
         self._light = Light() if config.light_jumps else None
 
     def reach(self, growth: float) -> Floats:
@@ -96,7 +97,7 @@ class View:
         )
         window = self._as_at_first(window, elsewhere, again)
         planes = channel_stack(window.pixels, self._channels, self._cell)
-        features = self._features.maps(integral_images(planes))
+        features = self.features.maps(integral_images(planes))
         return Frame(window.in_cells(self._cell), planes, features, growth)
 
     def colours(self, pixels: Image) -> Image:

@@ -1,0 +1,102 @@
+# Copyright 2026 het_ros maintainers
+# SPDX-License-Identifier: Apache-2.0
+import numpy as np
+import pytest
+
+from het_ros.tracking.channels import channel_stack
+from het_ros.tracking.grid_means import grid_means
+from het_ros.tracking.size_regression import SizeRegression
+from het_ros.tracking.window import cut_window
+
+CHANNELS = ("lightness", "green_red", "blue_yellow", "gradient")
+NAMES = ["David", "Crossing", "Couple", "Car1"]
+
+
+def seen(frames, zoom=1.0, side=48, beside=(0.0, 0.0)):
+    """(planes, centre, size): the first target ``zoom`` times as large, at 24 cells a side."""
+    image, box = frames.image(0), frames.boxes[0]
+    shape = side * np.array([box.w, box.h]) / np.sqrt(box.area)
+    scale = zoom * side / np.sqrt(box.area)
+    half = 1.3 * shape
+    width, height = np.ceil(2 * half).astype(int)
+    x, y = np.array(box.centre) - half / scale
+    window = cut_window(image, x, y, int(width), int(height), (scale, scale))
+    size = round(shape[0] / 2), round(shape[1] / 2)
+    return channel_stack(window.pixels, CHANNELS, 2), half / 2 + np.array(beside) * size, size
+
+
+def learnt(frames, rate=0.02, first_frame=0.1):
+    planes, centre, size = seen(frames)
+    regression = SizeRegression(size, 1.2, rate, first_frame)
+    regression.learn(planes, centre, 1.0)
+    return regression
+
+
+@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize("zoom", [0.94, 0.97, 1.0, 1.03, 1.06])
+def test_a_known_zoom_of_a_real_frame_is_found(sequence, name, zoom):
+    frames = sequence(name)
+    regression, growth = learnt(frames), 1.0
+    for _ in range(6):
+        planes, centre, _ = seen(frames, zoom / growth)
+        growth *= regression.change(planes, centre)
+    assert growth == pytest.approx(zoom, abs=0.015)
+
+
+@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize("beside", [(0.03, 0.0), (0.0, -0.03), (-0.02, 0.02)])
+def test_a_place_beside_the_target_changes_no_size(sequence, name, beside):
+    frames = sequence(name)
+    planes, centre, _ = seen(frames, beside=beside)
+    assert learnt(frames).change(planes, centre) == pytest.approx(1.0, abs=0.02)
+
+
+def test_it_is_ridge_regression():
+    """Of noise, in one frame: the answer of a plain least-squares problem."""
+    rng = np.random.default_rng(0)
+    planes = tuple(rng.integers(0, 256, (60, 70), np.uint8) for _ in range(2))
+    centre, size = np.array([35.0, 30.0]), np.array([30.0, 26.0])
+    regression = SizeRegression((30, 26), 1.0, 0.1, 0.0)
+    regression.learn(planes, centre, 1.0)
+
+    def features(place, logarithm):
+        means = grid_means(planes, place, np.exp(logarithm) * size[None], (5, 5))[0]
+        return (means - first) / (first.std(axis=(0, 2))[:, None] + 1)
+
+    first = grid_means(planes, centre, size[None], (5, 5))[0]
+    shifts = [(x, y) for x in (-1, 0, 1) for y in (-1, 0, 1)]
+    samples = [(centre + 0.04 * np.array(s) * size, 0.0) for s in shifts]
+    samples += [(centre, 0.0)] * 9 + [(centre, k) for k in (-0.1, -0.05, 0.05, 0.1)]
+    design = np.array([[*features(*sample).ravel(), 1.0] for sample in samples])
+    wanted = [-logarithm for _, logarithm in samples]
+    weight = 3 * (design[:, :-1] ** 2).mean()
+    penalty = np.sqrt(weight * len(samples)) * np.eye(design.shape[1])[:-1]
+    stacked = np.vstack([design, penalty])
+    answers = np.concatenate([wanted, np.zeros(len(penalty))])
+    slow = np.linalg.lstsq(stacked, answers, rcond=None)[0]
+    for shift in (0.0, 1.5, -3.0):
+        place = centre + shift
+        answer = np.log(regression.change(planes, place))
+        assert answer == pytest.approx([*features(place, 0.0).ravel(), 1.0] @ slow, abs=2e-4)
+
+
+def test_a_target_that_was_learnt_larger_is_as_it_should_be(sequence):
+    frames = sequence("David")
+    regression = learnt(frames, rate=1.0, first_frame=0.0)
+    planes, centre, _ = seen(frames, 1.05)
+    regression.learn(planes, centre, 1.05)
+    planes, centre, _ = seen(frames)
+    assert regression.change(planes, centre) == pytest.approx(1.0, abs=0.01)
+
+
+def test_nothing_to_see_keeps_the_size():
+    flat = (np.full((30, 40), 77, np.uint8),)
+    regression = SizeRegression((12, 16), 1.2, 0.02, 0.1)
+    regression.learn(flat, np.array([20.0, 15.0]), 1.0)
+    assert regression.change(flat, np.array([20.0, 15.0])) == pytest.approx(1.0, abs=0.05)
+
+
+def test_nothing_learnt_is_an_error():
+    regression = SizeRegression((12, 16), 1.2, 0.02, 0.1)
+    with pytest.raises(RuntimeError, match="call learn first"):
+        regression.change((np.zeros((30, 40), np.uint8),), np.array([20.0, 15.0]))
