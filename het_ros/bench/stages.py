@@ -12,7 +12,7 @@ from contextlib import contextmanager
 from typing import Any
 
 from het_ros.bench.footage import Footage
-from het_ros.tracking import combination, flow_prior, target, view
+from het_ros.tracking import appearance, combination, flow_prior, view
 from het_ros.tracking.angle_filter import AngleFilter
 from het_ros.tracking.base_ensembles import NaiveBayes
 from het_ros.tracking.box import Box
@@ -38,12 +38,12 @@ _PLACES: tuple[tuple[str, Any, str], ...] = (
     ("scores", RidgeEnsembles, "score_maps"),
     ("scores", NaiveBayes, "score_maps"),
     ("colour", ColourModel, "likelihood"),
-    ("colour", target, "cell_means"),
-    ("colour", target, "box_means"),
+    ("colour", appearance, "cell_means"),
+    ("colour", appearance, "box_means"),
     ("colour", ColourModel, "learn"),
     ("flow", flow_prior, "trace"),
-    ("peak", target, "find_peak"),
-    ("peak", target, "detect"),
+    ("peak", appearance, "find_peak"),
+    ("peak", appearance, "detect"),
     ("peak", combination, "weights"),
     ("peak", combination, "hypotheses"),
     ("peak", combination, "combine"),

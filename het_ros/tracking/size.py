@@ -41,7 +41,7 @@ class Size:
         self._filter = scale_filter(config, cells) if config.scales > 1 else None
         regressed = self._filter and config.size_regression
         self._regression = size_regression(config, cells) if regressed else None
-        self._template = TemplateSize()
+        self._template_size = TemplateSize()
         self._limit = config.growth_limit
         self._frames = 0
 
@@ -71,7 +71,7 @@ class Size:
         if self._regression:
             ratio = math.sqrt(ratio * self._regression.change(planes, centre))
         if template:
-            ratio *= self._template.change(planes, centre, template)
+            ratio *= self._template_size.change(planes, centre, template)
         self._frames = min(self._frames + 1, _SIZES_KNOWN)
         fastest = math.exp(self._limit * dt * self._frames / _SIZES_KNOWN)
         ratio = min(max(ratio, 1 / fastest), fastest)

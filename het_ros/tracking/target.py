@@ -10,37 +10,24 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import NDArray
 
-from het_ros.tracking import combination
-from het_ros.tracking.base_ensembles import detect, scores_at
+from het_ros.tracking.appearance import Appearance
 from het_ros.tracking.box import Box
-from het_ros.tracking.centring import Centring
-from het_ros.tracking.colour import box_means, cell_means
 from het_ros.tracking.colour_search import ColourSearch
-from het_ros.tracking.compressive import Features
 from het_ros.tracking.config import TrackerConfig
 from het_ros.tracking.cost import check_cost
 from het_ros.tracking.estimate import Estimate, Patch, State
-from het_ros.tracking.flow_prior import FlowPrior
 from het_ros.tracking.frame import Floats, Frame, Image, Measurement
 from het_ros.tracking.inertia import Inertia
-from het_ros.tracking.layers import base_ensembles, colour_model, grid, motion_model, whole
-from het_ros.tracking.response import Peak, find_peak
+from het_ros.tracking.layers import grid, motion_model
 from het_ros.tracking.rotation import Rotation
 from het_ros.tracking.scenery import Scenery
 from het_ros.tracking.search import by_colour, other_size, search_centre
 from het_ros.tracking.size import Size
-from het_ros.tracking.sub_patches import draw_sub_patches, to_be_updated
-from het_ros.tracking.template import TemplateWriter
-from het_ros.tracking.trust import Evidence, Trust, Verdict
+from het_ros.tracking.sub_patches import draw_sub_patches
+from het_ros.tracking.trust import Trust, Verdict
 from het_ros.tracking.view import View
-from het_ros.tracking.window import Window
 
 Witness = Callable[[Box], bool]
-
-# A rival is a place of the target at least this part of its side away from the best one.
-_RIVAL_APART = 0.35
-# Blur takes texture away as it does shape: without colour the two must not count twice.
-_GRAY_POWER = 0.7
 
 
 class Target:
@@ -57,25 +44,21 @@ class Target:
 
     def __init__(self, config: TrackerConfig, image: Image, box: Box) -> None:
         self._config = config
+        self._everyone = np.ones(config.sub_patches, bool)
         rng = np.random.default_rng(config.seed)
-        self._cells, unit = grid(config, box)
-        check_cost(config, self._cells)
-        self._half = np.array(self._cells) / 2
-        self._radius = config.search_radius / config.cell
+        cells, unit = grid(config, box)
+        check_cost(config, cells)
+        self._half = np.array(cells) / 2
         self._sub_patches = draw_sub_patches(
-            (self._cells[0], self._cells[1]), config.sub_patches, config.sub_patch_fraction, rng
+            cells, config.sub_patches, config.sub_patch_fraction, rng
         )
-        self._view = View(config, image, box, self._cells, unit, self._sub_patches.size, rng)
-        self._ensembles = base_ensembles(config, self._cells)
-        self._colour = colour_model(config, self._cells)
-        centring = config.centring and config.colour_weight and config.trust
-        self._centring = Centring(self._cells) if centring else None
-        self._size = Size(config, box, self._cells)
-        sides = [cells * config.cell for cells in self._cells]
+        self._view = View(config, image, box, cells, unit, self._sub_patches.size, rng)
+        self._appearance = Appearance(config, cells, self._sub_patches, self._view)
+        self._size = Size(config, box, cells)
+        sides = [side * config.cell for side in cells]
         self._rotation = Rotation(*sides) if config.rotation else None
         self._trust = Trust(config) if config.trust else None
         self._motion = motion_model(config, box)
-        self._flow = FlowPrior(config, self._cells)
         self._seen_at = np.array(box.centre)
         self._inertia = Inertia(image, self._seen_at) if config.camera_motion else None
         remembers = config.trust and config.scenery
@@ -83,11 +66,8 @@ class Target:
         by_colours = config.colour_search and config.colour_weight
         self._colour_search = ColourSearch() if by_colours else None
         frame = self._view.look(image, self._seen_at, 1.0)
-        self._writer = None
-        if config.size_template and config.scales > 1:
-            features, planes = self._view.features, len(frame.planes)
-            self._writer = TemplateWriter(features, self._sub_patches, planes, self._cells)
-        self._learn(frame, self._corner_in(frame.window), np.ones(config.sub_patches, bool), 1.0)
+        corner = self._appearance.corner_in(frame.window, self._motion.centre)
+        self._learn(frame, corner, self._everyone, 1.0)
 
     def follow(self, image: Image, dt: float, witness: Witness | None = None) -> Estimate:
         """One frame: predict, detect, combine, judge, correct, update the model.
@@ -103,7 +83,7 @@ class Target:
         if self._rotation:
             self._rotation.predict(step)
         frame, found = self._search(image)
-        centre = frame.window.to_image(self._centre_of(found.corner))
+        centre = self._appearance.centre_in(frame.window, found.corner)
         verdict = Verdict.SEEN
         hidden = bool(self._trust and self._trust.hidden_frames)
         if self._trust and found.evidence:
@@ -121,11 +101,11 @@ class Target:
         score = self._update_model(frame, found, verdict, step)
         patches: tuple[Patch, ...] = ()
         if verdict is Verdict.HIDDEN:
-            self._flow.forget()
+            self._appearance.flow.forget()
         else:
             patches = self._sub_patches.in_image(frame.window, found.patch_corners, found.omega)
             upright = self._size.box(self._motion.centre)
-            self._flow.remember(frame.window, upright, step, score)
+            self._appearance.flow.remember(frame.window, upright, step, score)
             if self._scenery:
                 self._scenery.remember(image, self.box, step)
         state = self._trust.state if self._trust else State.TRACKING
@@ -155,7 +135,7 @@ class Target:
         self._seen_at = centre
         self._size.growth = frame.growth
         if self._rotation:
-            place = self._centre_of(found.corner) * self._config.cell
+            place = self._appearance.centre_of(found.corner) * self._config.cell
             self._rotation.observe(frame.window.pixels, place, dt)
 
     @property
@@ -217,62 +197,14 @@ class Target:
         if self._colour_search and by_colour(hidden):
             box = self._size.box(self._seen_at, growth)
             colours = self._view.colours
-            centre = self._colour_search.next_place(image, colours, self._colour, box, reach)
+            centre = self._colour_search.next_place(
+                image, colours, self._appearance.colour, box, reach
+            )
         else:
             centre = search_centre(hidden, self._motion.centre, self._seen_at, reach)
         frame = self._view.look(image, centre, growth, angle, hidden > 0, again)
-        return frame, self._measure(frame)
-
-    def _measure(self, frame: Frame) -> Measurement:
-        """Bottom and middle layer."""
-        scores = self._ensembles.score_maps(frame.features)
-        if self._config.combination == "weighted":
-            return self._weighted(frame, scores)
-        return self._dense(frame, scores)
-
-    def _weighted(self, frame: Frame, scores: Features) -> Measurement:
-        """The paper's middle layer: one hypothesis a sub-patch, weighted by its score."""
-        config = self._config
-        expected = self._sub_patches.corners(self._corner_in(frame.window))
-        found = detect(scores, expected, self._radius)
-        omega = combination.weights(found.scores, config.weight_low, config.weight_high)
-        candidates = combination.hypotheses(found.corners, self._sub_patches.offsets)
-        corner = combination.combine(candidates, omega)
-        return Measurement(corner, found.corners, omega, None, scores)
-
-    def _dense(self, frame: Frame, scores: Features) -> Measurement:
-        """All sub-patches and the colours vote for every place of the target."""
-        config = self._config
-        patch_columns, patch_rows = self._sub_patches.size
-        rows = scores.shape[1] - (round(self._cells[1]) - patch_rows)
-        columns = scores.shape[2] - (round(self._cells[0]) - patch_columns)
-        colour, likelihood = np.zeros((rows, columns), np.float32), None
-        if config.colour_weight:
-            likelihood = cell_means(self._colour.likelihood(frame.window.pixels), config.cell)
-            x, y = self._offset.tolist()
-            colour = box_means(likelihood, whole(self._cells), (rows, columns), (x, y))
-        prior = self._flow.over(frame.window, self._motion.centre, colour.shape, self._middle)
-        offsets = self._sub_patches.offsets.astype(np.intp)
-        apart_x, apart_y = (max(2, round(_RIVAL_APART * cells)) for cells in self._cells)
-        apart = (apart_x, apart_y)
-        peak = find_peak(scores, offsets, colour, config.colour_weight, apart, prior)
-        omega = np.clip(peak.patch_scores, config.weight_low, config.weight_high)
-        evidence = self._evidence(frame, peak, omega)
-        corners = self._sub_patches.corners(peak.corner)
-        return Measurement(peak.corner, corners, omega, evidence, scores, likelihood)
-
-    def _evidence(self, frame: Frame, peak: Peak, omega: Floats) -> Evidence:
-        """What speaks for a peak; distances in target sides."""
-        centre = frame.window.to_image(self._centre_of(peak.corner))
-        side = self._size.side(frame.growth)
-        return Evidence(
-            peak.template,
-            peak.colour**_GRAY_POWER if self._view.gray else peak.colour,
-            peak.rival,
-            moved=float(np.hypot(*(centre - self._motion.centre))) / side,
-            away=float(np.hypot(*(centre - self._seen_at))) / side,
-            spread=float(omega.std()),
-        )
+        side = self._size.side(growth)
+        return frame, self._appearance.find(frame, self._motion.centre, self._seen_at, side)
 
     def _update_model(
         self, frame: Frame, found: Measurement, verdict: Verdict, dt: float
@@ -280,56 +212,31 @@ class Target:
         """The three update mechanisms; returns the score of the estimate."""
         if self._trust:
             if verdict is Verdict.SEEN:
-                chosen = np.ones(self._config.sub_patches, bool)
                 ratio = self._follow_size(frame, found.corner, dt)
-                self._learn(frame, found.corner, chosen, ratio)
-                if self._centring and found.likelihood is not None:
-                    self._centring.observe(found.likelihood, self._centre_of(found.corner))
+                self._learn(frame, found.corner, self._everyone, ratio)
+                self._appearance.centre(found)
             return self._trust.score
-        target = self._corner_in(frame.window)
-        corners = self._sub_patches.corners(target)
-        score = self._ensembles.likelihood(frame.features, corners)
-        chosen = to_be_updated(scores_at(found.scores, corners))
-        ratio = self._follow_size(frame, target, dt)
-        self._learn(frame, target, chosen, ratio)
+        corner = self._appearance.corner_in(frame.window, self._motion.centre)
+        score, chosen = self._appearance.score_at(frame, found, corner)
+        ratio = self._follow_size(frame, corner, dt)
+        self._learn(frame, corner, chosen, ratio)
         return score
 
     def _follow_size(self, frame: Frame, corner: Floats, dt: float) -> float:
         """Take over the change of size; returns the ratio to the size before."""
-        votes = self._ensembles.votes if self._writer else None
-        template = self._writer.write(votes) if self._writer and votes is not None else None
+        drawn = self._config.size_template and self._config.scales > 1
+        template = self._appearance.template(frame) if drawn else None
         return self._size.follow(frame.planes, corner + self._half, dt, template)
 
     def _learn(
         self, frame: Frame, corner: Floats, chosen: NDArray[np.bool_], ratio: float
     ) -> None:
-        """Re-extract the sub-patches at the target's ``corner``, cells, and learn them."""
-        config = self._config
-        self._ensembles.learn(frame.features, self._sub_patches.corners(corner), chosen)
-        if config.colour_weight:
-            x, y = (corner + self._offset) * config.cell
-            self._colour.learn(frame.window.pixels, (float(x), float(y)))
+        """Learn the target at the layout's ``corner``, cells, ``ratio`` times as large."""
+        self._appearance.learn(frame, corner, chosen)
         self._size.learn(frame.planes, corner + self._half, ratio)
         if self._rotation:
-            self._rotation.learn(frame.window.pixels, self._centre_of(corner) * config.cell)
-
-    @property
-    def _offset(self) -> Floats:
-        """(x, y), cells, of the target's centre from that of the sub-patches' layout."""
-        return self._centring.offset if self._centring else np.zeros(2)
-
-    @property
-    def _middle(self) -> Floats:
-        """(x, y), cells, from the layout's corner to the target's centre."""
-        return self._half + self._offset
-
-    def _centre_of(self, corner: Floats) -> Floats:
-        """The centre of a target with the layout's corner there, cells."""
-        return corner + self._middle
-
-    def _corner_in(self, window: Window) -> Floats:
-        """The layout's corner by the motion model, cells of the window."""
-        return window.to_window(self._motion.centre) - self._middle
+            place = self._appearance.centre_of(corner) * self._config.cell
+            self._rotation.learn(frame.window.pixels, place)
 
 
 def _shape_of(look: tuple[Frame, Measurement]) -> float:
