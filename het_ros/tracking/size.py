@@ -41,7 +41,8 @@ class Size:
         self._filter = scale_filter(config, cells) if config.scales > 1 else None
         regressed = self._filter and config.size_regression
         self._regression = size_regression(config, cells) if regressed else None
-        self._template_size = TemplateSize()
+        drawn = self._filter and config.size_template
+        self._template_size = TemplateSize() if drawn else None
         self._limit = config.growth_limit
         self._frames = 0
 
@@ -54,6 +55,10 @@ class Size:
         """sqrt(w h), px, of the target's box at that growth."""
         return growth * math.sqrt(self.first.prod())
 
+    def asks_template(self) -> bool:
+        """Whether the base ensembles' template counts in this frame; called once a frame."""
+        return self._template_size is not None and self._template_size.is_due()
+
     def follow(
         self, planes: Planes, centre: Floats, dt: float, template: Template | None = None
     ) -> float:
@@ -63,14 +68,14 @@ class Size:
             planes: C channels (H, W) uint8.
             centre: (x, y) of the target, px of the channels.
             dt: time since the last frame, s.
-            template: of the base ensembles, where they have one.
+            template: of the base ensembles, where it is asked for and they have one.
         """
         if self._filter is None:
             return 1.0
         ratio = self._filter.change(planes, centre)
         if self._regression:
             ratio = math.sqrt(ratio * self._regression.change(planes, centre))
-        if template:
+        if template and self._template_size:
             ratio *= self._template_size.change(planes, centre, template)
         self._frames = min(self._frames + 1, _SIZES_KNOWN)
         fastest = math.exp(self._limit * dt * self._frames / _SIZES_KNOWN)

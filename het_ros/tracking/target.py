@@ -224,8 +224,8 @@ class Target:
 
     def _follow_size(self, frame: Frame, corner: Floats, dt: float) -> float:
         """Take over the change of size; returns the ratio to the size before."""
-        drawn = self._config.size_template and self._config.scales > 1
-        template = self._appearance.template(frame) if drawn else None
+        asked = self._size.asks_template()
+        template = self._appearance.template(frame) if asked else None
         return self._size.follow(frame.planes, corner + self._half, dt, template)
 
     def _learn(

@@ -21,12 +21,13 @@ from het_ros.tracking.template import Template
 _STEP = 0.08  # part of the size that is added and taken away
 _LEAST_SCORE = 0.2  # the slope is taken over the score, or this
 # Slope of the score over the logarithm of the size where that is right: templates prefer smaller
-# ones. Half is the mean of many targets, half that of the target's own first frames.
+# ones. Half is the mean of many targets, half that of the target's own first looks.
 _USUAL = -0.25
-_FRAMES = 30
-_UNKNOWN = 15  # frames after which the mean is known well enough to go by
+_LOOKS = 15
+_UNKNOWN = 8  # looks after which the mean is known well enough to go by
 _MOST = 0.5  # of the slope that is believed
-_GAIN = 0.005  # logarithm of the size a frame, over the slope
+_GAIN = 0.01  # logarithm of the size a look, over the slope
+_EVERY = 2  # frames: sizes change slowly, and a template costs as much as a scale filter
 
 
 class TemplateSize:
@@ -34,10 +35,16 @@ class TemplateSize:
 
     def __init__(self) -> None:
         self._frames = 0
+        self._looks = 0
         self._mean = 0.0
 
+    def is_due(self) -> bool:
+        """Whether a frame is one to look at; called once a frame."""
+        self._frames += 1
+        return self._frames % _EVERY == 0
+
     def change(self, planes: Planes, centre: Floats, template: Template) -> float:
-        """Ratio by which the size is to be drawn in this frame.
+        """Ratio by which the size is to be drawn.
 
         Args:
             planes: C channels (H, W) uint8.
@@ -45,10 +52,10 @@ class TemplateSize:
             template: the base ensembles' weights.
         """
         slope = size_slope(planes, centre, template)
-        self._frames += 1
-        if self._frames <= _FRAMES:
-            self._mean += (slope - self._mean) / self._frames
-        if self._frames <= _UNKNOWN:
+        self._looks += 1
+        if self._looks <= _LOOKS:
+            self._mean += (slope - self._mean) / self._looks
+        if self._looks <= _UNKNOWN:
             return 1.0
         off = slope - (_USUAL + self._mean) / 2
         return math.exp(_GAIN * min(max(off, -_MOST), _MOST))

@@ -106,3 +106,11 @@ def test_without_the_regression_the_filter_counts_in_full(both):
     ratio = size.follow(planes(1.03), CENTRE, DT)
     alone = started(Box(0, 0, 40, 40), size_regression=False, growth_limit=100.0)
     assert (ratio == alone.follow(planes(1.03), CENTRE, DT)) is not both
+
+
+@pytest.mark.parametrize(
+    ("changes", "asked"), [({}, True), ({"size_template": False}, False), ({"scales": 1}, False)]
+)
+def test_a_template_is_asked_for_where_it_counts(changes, asked):
+    size = Size(replace(TrackerConfig(), **changes), Box(0, 0, 40, 40), CELLS)
+    assert any(size.asks_template() for _ in range(4)) is asked

@@ -56,13 +56,18 @@ def test_it_is_what_a_slow_sum_gives(side):
     assert found == pytest.approx(wanted, rel=0.05, abs=0.15)
 
 
-def test_the_first_frames_draw_nothing_and_later_ones_little():
+def test_the_first_looks_draw_nothing_and_later_ones_little():
     size = TemplateSize()
-    ratios = [size.change(square(12), CENTRE, template()) for _ in range(15)]
-    assert ratios == [1.0] * 15
+    ratios = [size.change(square(12), CENTRE, template()) for _ in range(8)]
+    assert ratios == [1.0] * 8
     for _ in range(30):
         size.change(square(12), CENTRE, template())
     larger = size.change(square(18), CENTRE, template())
     smaller = size.change(square(8), CENTRE, template())
-    assert 1 / 1.003 < smaller < 1 < larger < 1.003
-    assert math.log(larger) == pytest.approx(0.0025)  # no more, whatever the slope
+    assert 1 / 1.006 < smaller < 1 < larger < 1.006
+    assert math.log(larger) == pytest.approx(0.005)  # no more, whatever the slope
+
+
+def test_every_second_frame_is_looked_at():
+    size = TemplateSize()
+    assert [size.is_due() for _ in range(6)] == [False, True] * 3
