@@ -9,7 +9,7 @@ import pytest
 import reference
 
 from het_ros import Box, HierarchicalEnsembleTracker, TrackerConfig
-from het_ros.tracking import target as target_module
+from het_ros.tracking import appearance
 from het_ros.tracking.channels import names_for
 from het_ros.tracking.compressive import CompressiveFeatures, draw_measurement_matrix
 from het_ros.tracking.sub_patches import draw_sub_patches
@@ -43,8 +43,8 @@ def reference_tracker(config, image, box):
 def seen(monkeypatch):
     """What the tracker's layers handed each other in the last frame."""
     last = {}
-    detect, weights = target_module.detect, target_module.combination.weights
-    select, maps = target_module.to_be_updated, CompressiveFeatures.maps
+    detect, weights = appearance.detect, appearance.combination.weights
+    select, maps = appearance.to_be_updated, CompressiveFeatures.maps
 
     def keep(name, value):
         last[name] = value
@@ -54,11 +54,9 @@ def seen(monkeypatch):
         last["scores"] = scores
         return keep("found", detect(scores, corners, radius))
 
-    monkeypatch.setattr(target_module, "detect", keep_detection)
-    monkeypatch.setattr(
-        target_module.combination, "weights", lambda *a: keep("omega", weights(*a))
-    )
-    monkeypatch.setattr(target_module, "to_be_updated", lambda c: keep("chosen", select(c)))
+    monkeypatch.setattr(appearance, "detect", keep_detection)
+    monkeypatch.setattr(appearance.combination, "weights", lambda *a: keep("omega", weights(*a)))
+    monkeypatch.setattr(appearance, "to_be_updated", lambda c: keep("chosen", select(c)))
     monkeypatch.setattr(
         CompressiveFeatures,
         "maps",
