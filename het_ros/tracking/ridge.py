@@ -160,8 +160,8 @@ class RidgeEnsembles:
 
 def solved(matrix: Features, wanted: Features) -> Features:
     """The solution of ``matrix`` (n, n), symmetric and positive, times x = ``wanted`` (n, Q)."""
-    solved, votes = cv2.solve(matrix, wanted, flags=cv2.DECOMP_CHOLESKY)
-    if not solved:
+    found, votes = cv2.solve(matrix, wanted, flags=cv2.DECOMP_CHOLESKY)
+    if not found:
         # Rounding may make the least eigenvalues negative where the regularisation is tiny
         # beside the features: those of a target that was flat when it was started.
         votes = np.linalg.lstsq(matrix, wanted, rcond=None)[0]
