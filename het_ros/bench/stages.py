@@ -21,6 +21,7 @@ from het_ros.tracking.centring import Centring
 from het_ros.tracking.colour import ColourModel
 from het_ros.tracking.compressive import CompressiveFeatures
 from het_ros.tracking.config import TrackerConfig
+from het_ros.tracking.first_look import FirstLook
 from het_ros.tracking.motion import AdaptiveKalman
 from het_ros.tracking.ridge import RidgeEnsembles
 from het_ros.tracking.scenery import Scenery
@@ -47,6 +48,7 @@ _PLACES: tuple[tuple[str, Any, str], ...] = (
     ("peak", combination, "weights"),
     ("peak", combination, "hypotheses"),
     ("peak", combination, "combine"),
+    ("first look", FirstLook, "correction"),
     ("scenery", Scenery, "shows"),
     ("scenery", Scenery, "remember"),
     ("centring", Centring, "observe"),

@@ -13,10 +13,11 @@ from het_ros.tracking.centring import Centring
 from het_ros.tracking.colour import box_means, cell_means
 from het_ros.tracking.compressive import Features
 from het_ros.tracking.config import TrackerConfig
+from het_ros.tracking.first_look import Correction, FirstLook
 from het_ros.tracking.flow_prior import FlowPrior
 from het_ros.tracking.frame import Floats, Frame, Measurement
 from het_ros.tracking.layers import Cells, base_ensembles, colour_model, whole
-from het_ros.tracking.response import Peak, find_peak
+from het_ros.tracking.response import find_peak
 from het_ros.tracking.sub_patches import SubPatches, to_be_updated
 from het_ros.tracking.template import Template, TemplateWriter
 from het_ros.tracking.trust import Evidence
@@ -57,6 +58,7 @@ class Appearance:
         self.flow = FlowPrior(config, cells)
         centring = config.centring and config.colour_weight and config.trust
         self._centring = Centring(cells) if centring else None
+        self._first_look: FirstLook | None = None
         self._writer: TemplateWriter | None = None
 
     def find(self, frame: Frame, expected: Floats, seen_at: Floats, side: float) -> Measurement:
@@ -79,11 +81,22 @@ class Appearance:
         apart = (apart_x, apart_y)
         peak = find_peak(scores, offsets, colour, self._config.colour_weight, apart, prior)
         omega = np.clip(peak.patch_scores, self._config.weight_low, self._config.weight_high)
-        centre = self.centre_in(frame.window, peak.corner)
+        drawn = self._correction(frame, peak.corner)
+        corner = peak.corner + drawn.shift
+        centre = self.centre_in(frame.window, corner)
         moved, away = (float(np.hypot(*(centre - place))) / side for place in (expected, seen_at))
-        evidence = self._evidence(peak, moved, away, float(omega.std()))
-        corners = self._sub_patches.corners(peak.corner)
-        return Measurement(peak.corner, corners, omega, evidence, scores, likelihood)
+        colours = peak.colour**_GRAY_POWER if self._view.gray else peak.colour
+        evidence = Evidence(
+            peak.template, colours, peak.rival, moved, away, float(omega.std()), drawn.likeness
+        )
+        corners = self._sub_patches.corners(corner)
+        return Measurement(corner, corners, omega, evidence, scores, likelihood, drawn.ratio)
+
+    def _correction(self, frame: Frame, corner: Floats) -> Correction:
+        """What the first frame says of a target at the layout's ``corner``, cells."""
+        if self._first_look is None:
+            return Correction(np.zeros(2), 1.0, None)
+        return self._first_look.correction(frame.planes, corner + self._half)
 
     def _weighted(self, frame: Frame, scores: Features, expected: Floats) -> Measurement:
         """The paper's middle layer: one hypothesis a sub-patch, weighted by its score."""
@@ -110,11 +123,6 @@ class Appearance:
         votes = box_means(likelihood, whole(self._cells), (rows, columns), (x, y))
         return votes, likelihood
 
-    def _evidence(self, peak: Peak, moved: float, away: float, spread: float) -> Evidence:
-        """What speaks for a peak; distances in target sides."""
-        colour = peak.colour**_GRAY_POWER if self._view.gray else peak.colour
-        return Evidence(peak.template, colour, peak.rival, moved, away, spread)
-
     def score_at(
         self, frame: Frame, found: Measurement, corner: Floats
     ) -> tuple[float, NDArray[np.bool_]]:
@@ -129,6 +137,8 @@ class Appearance:
         if self._config.colour_weight:
             x, y = (corner + self._offset) * self._config.cell
             self.colour.learn(frame.window.pixels, (float(x), float(y)))
+        if self._config.first_look and self._first_look is None:
+            self._first_look = FirstLook(frame.planes, corner + self._half, self._cells)
 
     def centre(self, found: Measurement) -> None:
         """Let a box that lies beside its target move onto it."""

@@ -150,6 +150,9 @@ class TrackerConfig:
     size_template: bool = parameter(
         True, "draw the size to where the base ensembles score as they did at first (ridge)"
     )
+    first_look: bool = parameter(
+        True, "draw place and size to where the target looks as in its first frame"
+    )
     growth_limit: float = parameter(
         0.42, "the target's size changes at most this fast", unit="1/s", low=0, high=100
     )
@@ -287,6 +290,7 @@ class TrackerConfig:
             scales=1,
             size_regression=False,
             size_template=False,
+            first_look=False,
             acceleration=20.0,
             measurement_noise=0.05,
             trust=False,

@@ -46,6 +46,7 @@ class Measurement:
         evidence: raw evidence for the place, or None where nothing judges it.
         scores: (Q, rows, columns) of the base ensembles.
         likelihood: (H, W) of the colours in the window, in cells, or None without them.
+        ratio: by which the target's size is drawn to what it was in the first frame.
     """
 
     corner: Floats
@@ -54,3 +55,4 @@ class Measurement:
     evidence: Evidence | None
     scores: Features
     likelihood: Plane | None = None
+    ratio: float = 1.0

@@ -60,7 +60,12 @@ class Size:
         return self._template_size is not None and self._template_size.is_due()
 
     def follow(
-        self, planes: Planes, centre: Floats, dt: float, template: Template | None = None
+        self,
+        planes: Planes,
+        centre: Floats,
+        dt: float,
+        template: Template | None = None,
+        drawn: float = 1.0,
     ) -> float:
         """Take over the change of size in a frame; returns the ratio to the size before.
 
@@ -69,12 +74,14 @@ class Size:
             centre: (x, y) of the target, px of the channels.
             dt: time since the last frame, s.
             template: of the base ensembles, where it is asked for and they have one.
+            drawn: ratio by which the first frame draws the size.
         """
         if self._filter is None:
             return 1.0
         ratio = self._filter.change(planes, centre)
         if self._regression:
             ratio = math.sqrt(ratio * self._regression.change(planes, centre))
+        ratio *= drawn
         if template and self._template_size:
             ratio *= self._template_size.change(planes, centre, template)
         self._frames = min(self._frames + 1, _SIZES_KNOWN)

@@ -212,7 +212,7 @@ class Target:
         """The three update mechanisms; returns the score of the estimate."""
         if self._trust:
             if verdict is Verdict.SEEN:
-                ratio = self._follow_size(frame, found.corner, dt)
+                ratio = self._follow_size(frame, found.corner, dt, found.ratio)
                 self._learn(frame, found.corner, self._everyone, ratio)
                 self._appearance.centre(found)
             return self._trust.score
@@ -222,11 +222,11 @@ class Target:
         self._learn(frame, corner, chosen, ratio)
         return score
 
-    def _follow_size(self, frame: Frame, corner: Floats, dt: float) -> float:
-        """Take over the change of size; returns the ratio to the size before."""
+    def _follow_size(self, frame: Frame, corner: Floats, dt: float, drawn: float = 1.0) -> float:
+        """Take over the change of size, ``drawn`` by the first frame; returns the ratio of it."""
         asked = self._size.asks_template()
         template = self._appearance.template(frame) if asked else None
-        return self._size.follow(frame.planes, corner + self._half, dt, template)
+        return self._size.follow(frame.planes, corner + self._half, dt, template, drawn)
 
     def _learn(
         self, frame: Frame, corner: Floats, chosen: NDArray[np.bool_], ratio: float

@@ -38,11 +38,14 @@ _IN_PLACE = 0.3  # target sides from the prediction: who is found there ...
 _KNOWN_THERE = 0.8  # ... and recognised with this probability is not hidden, ...
 _BARELY_THERE = 0.4  # ... down to this share of ``hidden``, ...
 _UNCLEAR_TIME = 0.5  # ... unless nothing else has spoken for it for so long, s
+_SAME = 0.5  # likeness to the first frame that nothing else has near the target
 _SURE = 100.0  # a logit beyond which nothing changes but that exp() overflows
 # Logistic regression of "IoU over 0.5" on the evidence, over the frames of many real tracks.
 _BIAS, _BY_TEMPLATE, _BY_MEAN, _BY_COLOUR, _BY_RIVAL = -8.1, 4.0, 9.2, 1.0, -2.7
 # The same of "this is the hidden target", on its evidence as in :func:`recognised`.
 _KNOWN = (1.0, 4.0, 2.37, -3.72, -2.0, -1.0, -4.92)
+# Likeness to the first frame speaks for it from _HALF_LIKE on and below that against it.
+_BY_LIKENESS, _HALF_LIKE, _MOST_LIKE = 8.0, 0.28, 0.6
 
 
 class Verdict(Enum):
@@ -64,6 +67,7 @@ class Evidence:
         moved: distance from the prediction, target sides.
         away: distance from where the target was last seen, target sides.
         spread: deviation of the sub-patches' weights there: of a target they agree.
+        likeness: correlation with the target of the first frame, -1..1, where that is known.
     """
 
     template: float
@@ -72,6 +76,7 @@ class Evidence:
     moved: float = 0.0
     away: float = 0.0
     spread: float = 0.0
+    likeness: float | None = None
 
     @property
     def alike(self) -> float:
@@ -126,7 +131,8 @@ class Trust:
         self._unclear_for = 0.0 if plain else self._unclear_for + dt
         if self._doubted_for > _LONGEST_DOUBT:
             # Light that changed for good is learnt; what covers the target is not followed.
-            verdict = Verdict.SEEN if self._is_clear(relative) else Verdict.HIDDEN
+            sure = self._is_clear(relative) or _is_same(relative)
+            verdict = Verdict.SEEN if sure else Verdict.HIDDEN
         self.score = self._rate(relative, dt)
         if verdict is Verdict.HIDDEN:
             self.hidden_for += dt
@@ -203,7 +209,7 @@ class Trust:
     def _is_back(self, relative: Evidence) -> bool:
         """Whether a hidden target has come back; farther off only on stronger evidence."""
         limits = self._limits
-        if self._is_in_place(relative):
+        if self._is_in_place(relative) or _is_same(relative):
             return True
         least = limits.return_probability
         if relative.moved > _FAR:
@@ -225,7 +231,7 @@ class Trust:
         if old and relative.alike < limits.hidden:
             # Where the light changes the colours do too, but nothing else looks like the target.
             clear = relative.alike >= _BARELY * limits.hidden and self._is_clear(relative)
-            there = clear or self._is_in_place(relative)
+            there = clear or self._is_in_place(relative) or _is_same(relative)
             return Verdict.DOUBTED if there else Verdict.HIDDEN
         ambiguous = template < limits.doubt_template and rival > limits.doubt_rival
         # A post that comes in from the side takes the colours away first.
@@ -237,6 +243,11 @@ class Trust:
         stranger = probation and template < _AS_BEFORE
         doubted = ambiguous or covered or twin or stranger
         return Verdict.DOUBTED if old and doubted else Verdict.SEEN
+
+
+def _is_same(relative: Evidence) -> bool:
+    """Whether it is not far off and looks as the target did in its first frame."""
+    return (relative.likeness or 0.0) >= _SAME and relative.moved <= _FAR
 
 
 def probability(template: float, mean: float, colour: float, rival: float) -> float:
@@ -265,7 +276,7 @@ def recognised(relative: Evidence) -> float:
         relative: evidence, template and colour over their means, rival over the best.
     """
     bias, by_template, by_colour, by_rival, by_moved, by_away, by_spread = _KNOWN
-    return _logistic(
+    logit = (
         bias
         + by_template * relative.template
         + by_colour * min(relative.colour, 1.2)
@@ -274,6 +285,9 @@ def recognised(relative: Evidence) -> float:
         + by_away * min(relative.away, _FAR)
         + by_spread * relative.spread
     )
+    if relative.likeness is not None:
+        logit += _BY_LIKENESS * (min(relative.likeness, _MOST_LIKE) - _HALF_LIKE)
+    return _logistic(logit)
 
 
 def _logistic(logit: float) -> float:

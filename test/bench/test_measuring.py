@@ -92,7 +92,7 @@ def test_there_is_no_floor_without_a_working_resolution():
         (SMALL, set()),
         (
             TrackerConfig.paper(),
-            {"camera", "centring", "colour", "flow", "rotation", "scenery"},
+            {"camera", "centring", "colour", "first look", "flow", "rotation", "scenery"},
         ),
     ],
 )

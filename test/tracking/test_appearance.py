@@ -48,6 +48,20 @@ def test_who_was_learnt_is_found_beside_the_middle_of_the_window(sequence, name,
         assert found.evidence.template > 0.7
 
 
+@pytest.mark.parametrize(("changes", "known"), [({}, True), ({"first_look": False}, False)])
+def test_the_first_frame_is_known_again(sequence, changes, known):
+    appearance, view, image, box = learnt(sequence("David"), changes)
+    centre, side = np.array(box.centre), np.sqrt(box.area)
+    frame = view.look(image, centre, 1.0)
+    found = appearance.find(frame, centre, centre, side)
+    if known:
+        assert found.evidence.likeness > 0.9
+        assert found.ratio == pytest.approx(1.0, abs=0.01)
+    else:
+        assert found.evidence.likeness is None
+        assert found.ratio == 1.0
+
+
 def test_a_corner_and_its_centre_belong_together(sequence):
     appearance, view, image, box = learnt(sequence("David"), {})
     window = view.look(image, np.array(box.centre), 1.0).window

@@ -100,6 +100,13 @@ def test_a_template_draws_the_size_beside_what_has_changed():
     assert drawn.growth != left.growth
 
 
+@pytest.mark.parametrize("drawn", [0.98, 1.0, 1.02])
+def test_the_first_frame_draws_the_size(drawn):
+    size, alone = (started(Box(0, 0, 40, 40), growth_limit=100.0) for _ in range(2))
+    ratio = size.follow(planes(), CENTRE, DT, drawn=drawn)
+    assert ratio == pytest.approx(drawn * alone.follow(planes(), CENTRE, DT), rel=1e-6)
+
+
 @pytest.mark.parametrize("both", [True, False])
 def test_without_the_regression_the_filter_counts_in_full(both):
     size = started(Box(0, 0, 40, 40), size_regression=both, growth_limit=100.0)

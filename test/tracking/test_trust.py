@@ -53,6 +53,32 @@ def test_verdicts_on_a_target_that_was_well_seen(evidence, verdict):
     assert 0 <= trust.score <= 1
 
 
+@pytest.mark.parametrize(
+    ("likeness", "moved", "verdict"),
+    [
+        (None, 0.1, Verdict.HIDDEN),
+        (0.4, 0.1, Verdict.HIDDEN),
+        (0.55, 0.1, Verdict.DOUBTED),  # blurred, but nothing else looks as it did at first
+        (0.55, 1.5, Verdict.HIDDEN),  # far off it may be somebody in the same clothes
+    ],
+)
+def test_who_looks_as_at_first_is_not_hidden(likeness, moved, verdict):
+    faint = Evidence(0.4, 0.5, 0.65, moved=moved, likeness=likeness)
+    for before in (0, 3):  # frames that it was hidden for
+        trust = grown_up()
+        for _ in range(before):
+            trust.judge(GONE, 1 / 30)
+        assert trust.judge(faint, 1 / 30) is verdict
+
+
+def test_the_more_a_hidden_target_looks_as_at_first_the_more_it_is_recognised():
+    known = [
+        recognised(Evidence(**BACK, likeness=likeness)) for likeness in (-0.2, 0.1, 0.28, 0.5, 0.9)
+    ]
+    assert known == sorted(set(known))
+    assert known[2] == pytest.approx(recognised(Evidence(**BACK)))
+
+
 def test_a_new_target_is_tracked():
     trust = Trust(LIMITS)
     assert trust.state is State.TRACKING
