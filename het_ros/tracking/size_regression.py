@@ -28,6 +28,7 @@ _SIZES = np.array(
     [-0.1, -0.05, 0.05, 0.1]
 )  # logarithms of the sizes looked at beside the true one
 _BESIDE = 0.04  # sides of what is looked at: how far beside the target its size is looked at
+LEARNT_EVERY = 2  # frames: to learn one costs more than all else about the size
 _AS_IT_IS = 10.0  # weight of the target at its place and size
 
 _SHIFTS = np.array([(x, y) for x in (-1, 0, 1) for y in (-1, 0, 1) if x or y])

@@ -44,8 +44,9 @@ _SURE = 100.0  # a logit beyond which nothing changes but that exp() overflows
 _BIAS, _BY_TEMPLATE, _BY_MEAN, _BY_COLOUR, _BY_RIVAL = -8.1, 4.0, 9.2, 1.0, -2.7
 # The same of "this is the hidden target", on its evidence as in :func:`recognised`.
 _KNOWN = (1.0, 4.0, 2.37, -3.72, -2.0, -1.0, -4.92)
-# Likeness to the first frame speaks for it from _HALF_LIKE on and below that against it.
-_BY_LIKENESS, _HALF_LIKE, _MOST_LIKE = 8.0, 0.28, 0.6
+# Likeness to the first frame speaks for it from _HALF_LIKE on and below that against it, but less:
+# a target may have turned for good.
+_BY_LIKENESS, _LEAST_LIKE, _HALF_LIKE, _MOST_LIKE = 8.0, 0.2, 0.28, 0.6
 
 
 class Verdict(Enum):
@@ -286,7 +287,8 @@ def recognised(relative: Evidence) -> float:
         + by_spread * relative.spread
     )
     if relative.likeness is not None:
-        logit += _BY_LIKENESS * (min(relative.likeness, _MOST_LIKE) - _HALF_LIKE)
+        likeness = min(max(relative.likeness, _LEAST_LIKE), _MOST_LIKE)
+        logit += _BY_LIKENESS * (likeness - _HALF_LIKE)
     return _logistic(logit)
 
 
