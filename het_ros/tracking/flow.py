@@ -26,9 +26,9 @@ Points = NDArray[np.float32]
 
 _GRID, _CORE = 8, 0.8  # points a side in the box, in this part of it
 _RING_GRID, _RING = 6, 1.5  # points a side around the box, on a rectangle so much larger
-_PATCH = (13, 13)  # px around a point that are compared
+_PATCH = (11, 11)  # px around a point that are compared
 _LEVELS = 2  # of the pyramid above the window itself
-_STOP = (cv2.TERM_CRITERIA_COUNT + cv2.TERM_CRITERIA_EPS, 10, 0.03)
+_STOP = (cv2.TERM_CRITERIA_COUNT + cv2.TERM_CRITERIA_EPS, 6, 0.1)
 _THERE_AND_BACK = 1.0  # px, error of the flow back
 _TOGETHER = 0.1  # target sides from the median: farther off a point is not the target's
 _FEWEST = 8  # points

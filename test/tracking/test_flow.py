@@ -98,7 +98,7 @@ APART = np.stack([np.linspace(-30, 30, 60), np.full(60, 9.0)], axis=1).astype(np
     [
         (AWAY, STILL, 60),  # what goes another way is the target
         (AWAY[:25], STILL, 25),
-        (AWAY[:15], STILL, 15 + 40),  # an arm
+        (AWAY[:10], STILL, 10 + 40),  # an arm
         (APART, STILL, 60 + 40),  # they do not go together
         (AWAY, STILL[:5], 60 + 40),  # nothing is known of the background
         (AWAY, np.concatenate([STILL[:12] - 9, STILL[:12] + 9]), 60 + 40),  # nor here
