@@ -21,10 +21,10 @@ _SMALLEST_SIDE = 3.0  # px: below this a target is not shrunk any more
 
 
 class Size:
-    """Follows the target's size by up to three opinions, as far as they are believed.
+    """Follows the target's size by up to four opinions, as far as they are believed.
 
     The scale filter and the regression say what has changed and count half each; the template
-    draws slowly to where the size was right at first.
+    and the first frame draw slowly to where the size was right at first.
 
     Args:
         config: parameters.

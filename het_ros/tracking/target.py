@@ -218,12 +218,15 @@ class Target:
             return self._trust.score
         corner = self._appearance.corner_in(frame.window, self._motion.centre)
         score, chosen = self._appearance.score_at(frame, found, corner)
-        ratio = self._follow_size(frame, corner, dt)
+        ratio = self._follow_size(frame, corner, dt, found.ratio)
         self._learn(frame, corner, chosen, ratio)
         return score
 
-    def _follow_size(self, frame: Frame, corner: Floats, dt: float, drawn: float = 1.0) -> float:
-        """Take over the change of size, ``drawn`` by the first frame; returns the ratio of it."""
+    def _follow_size(self, frame: Frame, corner: Floats, dt: float, drawn: float) -> float:
+        """Take over the change of size; returns the ratio to the size before.
+
+        ``drawn`` is the ratio by which the first frame draws it.
+        """
         asked = self._size.asks_template()
         template = self._appearance.template(frame) if asked else None
         return self._size.follow(frame.planes, corner + self._half, dt, template, drawn)
