@@ -52,6 +52,29 @@ def grid_means(planes: Planes, centre: Floats, sides: Floats, grid: tuple[int, i
     return np.asarray(means)
 
 
+class Standard:
+    """What the first grid means of a target were, which all are compared with.
+
+    Each value is taken less its mean over the first grids, and over the deviation of its channel
+    there. What is flat would say too much: one level is added to the deviation.
+    """
+
+    def __init__(self) -> None:
+        self._mean: Features | None = None  # (d,)
+        self._weight: Features = np.empty(0, np.float32)  # (d,)
+
+    def features(self, means: Features) -> Features:
+        """(S, d) float32 of grid means (S, b, C, a), d = b C a; the first set the standard."""
+        flat = means.reshape(len(means), -1)
+        if self._mean is None:
+            self._mean = flat.mean(axis=0)
+            deviation = means.std(axis=(0, 1, 3))[:, None]  # (C, 1)
+            self._weight = np.broadcast_to(1 / (deviation + 1), means.shape[1:]).ravel()
+        features = flat - self._mean
+        features *= self._weight
+        return features
+
+
 def _coverage(lines: Floats, length: int) -> tuple[slice, Features]:
     """Part of each px of an axis that lies between one line and the next.
 

@@ -17,7 +17,7 @@ from het_ros.tracking.config import TrackerConfig
 from het_ros.tracking.motion import AdaptiveKalman
 from het_ros.tracking.ridge import RidgeEnsembles
 from het_ros.tracking.scale import ScaleFilter
-from het_ros.tracking.size_regression import LEARNT_EVERY, SizeRegression
+from het_ros.tracking.size_regression import SizeRegression
 
 Cells = tuple[float, float]
 
@@ -88,8 +88,9 @@ def scale_filter(config: TrackerConfig, cells: Cells) -> ScaleFilter:
 
 def size_regression(config: TrackerConfig, cells: Cells) -> SizeRegression:
     """The regression of the size of a target of ``cells`` (w, h)."""
-    rate = min(1.0, LEARNT_EVERY * config.scale_rate)
-    return SizeRegression(whole(cells), config.scale_context, rate, config.first_frame)
+    return SizeRegression(
+        whole(cells), config.scale_context, config.scale_rate, config.first_frame
+    )
 
 
 def motion_model(config: TrackerConfig, box: Box) -> AdaptiveKalman:

@@ -13,7 +13,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from het_ros.tracking.grid_means import Features, Floats, Planes, grid_means
+from het_ros.tracking.grid_means import Features, Floats, Planes, Standard, grid_means
 from het_ros.tracking.memory import Memory
 from het_ros.tracking.subpixel import parabola_offset
 
@@ -50,8 +50,7 @@ class ScaleFilter:
         self._exponents = np.arange(levels) - (levels - 1) / 2
         self._label = np.fft.rfft(np.exp(-0.5 * (self._exponents / _LABEL_SIGMA) ** 2))
         self._to_spectrum = _tapered_transform(levels)
-        self._mean: Features | None = None  # (d,)
-        self._weight: Features = np.empty(0, np.float32)  # (d,)
+        self._standard = Standard()
         # Of the S frequencies of real features the first K = S // 2 + 1 say all.
         self._memory = Memory(learning_rate, first_frame)  # numerator (d, K), energy (K,)
 
@@ -89,14 +88,7 @@ class ScaleFilter:
         """(d, K): channel means over the grid, centred and scaled, transformed over the sizes."""
         sides = ratio * self._step ** self._exponents[:, None] * self._size  # (S, 2)
         means = grid_means(planes, centre, sides, _GRID)  # (S, g, C, g)
-        features = means.reshape(len(sides), -1)
-        if self._mean is None:
-            self._mean = features.mean(axis=0)
-            deviation = means.std(axis=(0, 1, 3))  # (C,)
-            shape = means.shape[1:]
-            self._weight = np.broadcast_to(1 / (deviation[:, None] + 1), shape).reshape(-1).copy()
-        features -= self._mean
-        features *= self._weight
+        features = self._standard.features(means)
         # What is real and what imaginary of a frequency lie next to each other.
         return np.asarray((features.T @ self._to_spectrum).view(np.complex64))
 

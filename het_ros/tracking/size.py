@@ -12,7 +12,6 @@ from het_ros.tracking.box import Box
 from het_ros.tracking.config import TrackerConfig
 from het_ros.tracking.grid_means import Floats, Planes
 from het_ros.tracking.layers import Cells, scale_filter, size_regression
-from het_ros.tracking.size_regression import LEARNT_EVERY
 from het_ros.tracking.template import Template
 from het_ros.tracking.template_size import TemplateSize
 
@@ -46,7 +45,6 @@ class Size:
         self._template_size = TemplateSize() if drawn else None
         self._limit = config.growth_limit
         self._frames = 0
-        self._learnt = 0
 
     def box(self, centre: Floats, growth: float | None = None) -> Box:
         """The target's box at ``centre`` (x, y), px, at the present growth or at another."""
@@ -98,6 +96,5 @@ class Size:
         """Learn what the target looks like, ``ratio`` times as large as it was looked for."""
         if self._filter:
             self._filter.learn(planes, centre, ratio)
-        if self._regression and self._learnt % LEARNT_EVERY == 0:
+        if self._regression:
             self._regression.learn(planes, centre, ratio)
-        self._learnt += 1

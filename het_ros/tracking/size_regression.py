@@ -18,17 +18,15 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from het_ros.tracking.grid_means import Features, Floats, Planes, grid_means
+from het_ros.tracking.grid_means import Features, Floats, Planes, Standard, grid_means
 from het_ros.tracking.memory import Memory
 from het_ros.tracking.ridge import solved
 
 _GRID = 5, 5  # rectangles across and down
 _RIDGE = 3.0  # lambda
-_SIZES = np.array(
-    [-0.1, -0.05, 0.05, 0.1]
-)  # logarithms of the sizes looked at beside the true one
+_SIZES = np.array([-0.1, -0.05, 0.05, 0.1])  # logarithms, looked at beside the true one
 _BESIDE = 0.04  # sides of what is looked at: how far beside the target its size is looked at
-LEARNT_EVERY = 2  # frames: to learn one costs more than all else about the size
+_EVERY = 2  # frames: to learn one costs more than all else about the size
 _AS_IT_IS = 10.0  # weight of the target at its place and size
 
 _SHIFTS = np.array([(x, y) for x in (-1, 0, 1) for y in (-1, 0, 1) if x or y])
@@ -45,7 +43,7 @@ class SizeRegression:
     Args:
         size: (w, h) of the target at the present size, px of the channels.
         context: how much more than the target is looked at.
-        learning_rate: weight of the new frame, 0..1.
+        learning_rate: weight of a frame, 0..1; every second one is learnt, at twice the rate.
         first_frame: share of the first frame in what is learnt, which is never forgotten, 0..1.
     """
 
@@ -53,9 +51,10 @@ class SizeRegression:
         self, size: tuple[int, int], context: float, learning_rate: float, first_frame: float
     ) -> None:
         self._size = np.array(size, np.float64) * context
-        self._memory = Memory(learning_rate, first_frame)  # G (d + 1, d + 1), c (d + 1, 1)
-        self._mean: Features | None = None  # (d,)
-        self._weight: Features = np.empty(0, np.float32)  # (d,)
+        # G (d + 1, d + 1), c (d + 1, 1)
+        self._memory = Memory(min(1.0, _EVERY * learning_rate), first_frame)
+        self._frames = 0
+        self._standard = Standard()
         self._coefficients: NDArray[np.floating] = np.empty(0)  # b (d + 1,)
 
     def change(self, planes: Planes, centre: Floats) -> float:
@@ -74,13 +73,16 @@ class SizeRegression:
         return math.exp(float(features[0] @ self._coefficients))
 
     def learn(self, planes: Planes, centre: Floats, ratio: float) -> None:
-        """Learn the target at ``centre``, ``ratio`` times the present size.
+        """Learn the target at ``centre``, ``ratio`` times the present size, if it is due.
 
         Args:
             planes: C channels (H, W) uint8.
             centre: (x, y) of the target, px of the channels.
             ratio: of the size that it has to the present one.
         """
+        self._frames += 1
+        if self._frames % _EVERY == 0:
+            return
         sides = ratio * np.exp(_LOGARITHMS)[:, None] * self._size
         features = self._features(planes, centre + _PLACES * self._size, sides)
         weighted = _WEIGHTS.astype(np.float32)[:, None] * features
@@ -95,10 +97,6 @@ class SizeRegression:
     def _features(self, planes: Planes, centres: Floats, sides: Floats) -> Features:
         """(S, d + 1): channel means over grids, standardised, and a constant 1."""
         means = grid_means(planes, centres, sides, _GRID)  # (S, b, C, a)
-        if self._mean is None:
-            self._mean = means[0].ravel()
-            deviation = means[0].std(axis=(0, 2))[:, None]  # (C, 1)
-            self._weight = np.broadcast_to(1 / (deviation + 1), means.shape[1:]).ravel()
-        features = np.ones((len(sides), self._mean.size + 1), np.float32)
-        features[:, :-1] = (means.reshape(len(sides), -1) - self._mean) * self._weight
+        features = np.ones((len(sides), means[0].size + 1), np.float32)
+        features[:, :-1] = self._standard.features(means)
         return features

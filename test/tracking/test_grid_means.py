@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from het_ros.tracking.grid_means import grid_means
+from het_ros.tracking.grid_means import Standard, grid_means
 
 RNG = np.random.default_rng(4)
 PLANES = tuple(RNG.integers(0, 256, (30, 40), np.uint8) for _ in range(3))
@@ -63,3 +63,14 @@ def test_what_lies_outside_counts_as_empty(centre):
     assert np.isfinite(found).all()
     if max(map(abs, centre)) > 40:
         np.testing.assert_allclose(found, 0, atol=1e-6)
+
+
+def test_the_first_means_are_the_standard():
+    first, later = RNG.random((2, 3, 4, 2, 4)).astype(np.float32) * 100
+    standard = Standard()
+    features = standard.features(first), standard.features(later)
+    for means, found in zip((first, later), features, strict=True):
+        for s, row, channel, column in np.ndindex(means.shape):
+            value = means[s, row, channel, column] - first[:, row, channel, column].mean()
+            wanted = value / (first[:, :, channel].std() + 1)
+            assert found[s, (row * 2 + channel) * 4 + column] == pytest.approx(wanted, abs=1e-5)

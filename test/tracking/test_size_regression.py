@@ -1,5 +1,7 @@
 # Copyright 2026 het_ros maintainers
 # SPDX-License-Identifier: Apache-2.0
+import itertools
+
 import numpy as np
 import pytest
 from sight import seen
@@ -44,14 +46,18 @@ def test_it_is_ridge_regression():
     regression = SizeRegression((30, 26), 1.0, 0.1, 0.0)
     regression.learn(planes, centre, 1.0)
 
-    def features(place, logarithm):
-        means = grid_means(planes, place, np.exp(logarithm) * size[None], (5, 5))[0]
-        return (means - first) / (first.std(axis=(0, 2))[:, None] + 1)
+    def means(place, logarithm):
+        return grid_means(planes, place, np.exp(logarithm) * size[None], (5, 5))[0]
 
-    first = grid_means(planes, centre, size[None], (5, 5))[0]
+    def features(place, logarithm):
+        return (means(place, logarithm) - mean) / (deviation[:, None] + 1)
+
     shifts = [(x, y) for x in (-1, 0, 1) for y in (-1, 0, 1)]
     samples = [(centre + 0.04 * np.array(s) * size, 0.0) for s in shifts]
-    samples += [(centre, 0.0)] * 9 + [(centre, k) for k in (-0.1, -0.05, 0.05, 0.1)]
+    samples += [(centre, k) for k in (-0.1, -0.05, 0.05, 0.1)]
+    first = np.array([means(*sample) for sample in samples])
+    mean, deviation = first.mean(axis=0), first.std(axis=(0, 1, 3))
+    samples += [(centre, 0.0)] * 9
     design = np.array([[*features(*sample).ravel(), 1.0] for sample in samples])
     wanted = [-logarithm for _, logarithm in samples]
     weight = 3 * (design[:, :-1] ** 2).mean()
@@ -69,9 +75,23 @@ def test_a_target_that_was_learnt_larger_is_as_it_should_be(sequence):
     frames = sequence("David")
     regression = learnt(frames, rate=1.0, first_frame=0.0)
     planes, centre, _ = seen(frames, 1.05)
-    regression.learn(planes, centre, 1.05)
+    for _ in range(2):
+        regression.learn(planes, centre, 1.05)
     planes, centre, _ = seen(frames)
     assert regression.change(planes, centre) == pytest.approx(1.0, abs=0.01)
+
+
+def test_every_second_frame_is_learnt(sequence):
+    planes, centre, _ = seen(sequence("David"))
+    empty = tuple(np.zeros_like(plane) for plane in planes)
+    answers = []
+    regression = learnt(sequence("David"), rate=0.1)
+    for plane in (planes, empty, empty, planes):
+        answers.append(regression.change(planes, centre + 2.0))
+        regression.learn(plane, centre, 1.0)
+    answers.append(regression.change(planes, centre + 2.0))
+    changes = [after != before for before, after in itertools.pairwise(answers)]
+    assert changes == [False, True, False, True]
 
 
 def test_nothing_to_see_keeps_the_size():
