@@ -39,7 +39,7 @@ _KNOWN_THERE = 0.8  # ... and recognised with this probability is not hidden, ..
 _BARELY_THERE = 0.4  # ... down to this share of ``hidden``, ...
 _UNCLEAR_TIME = 0.5  # ... unless nothing else has spoken for it for so long, s
 _SAME = 0.5  # likeness to the first frame that nothing else has near the target
-_SURE = 100.0  # a logit beyond which nothing changes but that exp() overflows
+_LARGEST = 100.0  # a logit beyond which nothing changes but that exp() overflows
 # Logistic regression of "IoU over 0.5" on the evidence, over the frames of many real tracks.
 _BIAS, _BY_TEMPLATE, _BY_MEAN, _BY_COLOUR, _BY_RIVAL = -8.1, 4.0, 9.2, 1.0, -2.7
 # The same of "this is the hidden target", on its evidence as in :func:`recognised`.
@@ -146,6 +146,8 @@ class Trust:
             # Who looks the same may have come out elsewhere: time will tell.
             self._since_twin = 0.0
             self.score = min(self.score, 0.5)
+        if self._is_stranger(relative):
+            self.score = min(self.score, 0.5)
         unsure = self._returns_unsure(relative)
         self._since_return = 0.0 if unsure else self._since_return + dt
         self.hidden_for = 0.0
@@ -222,6 +224,11 @@ class Trust:
         """Whether this is a return of somebody who is not recognised for sure."""
         return self.hidden_frames >= _AWAY and recognised(relative) < _UNSURE
 
+    def _is_stranger(self, relative: Evidence) -> bool:
+        """Whether who is back may be the post that hid the target: it is not as before."""
+        probation = self._returns_unsure(relative) or self._since_return < _PROBATION
+        return probation and relative.template < _AS_BEFORE
+
     def _verdict(self, relative: Evidence) -> Verdict:
         """The rules."""
         limits = self._limits
@@ -239,10 +246,7 @@ class Trust:
         covered = colour < limits.learn_colour and template < 1
         # Somebody who looks the same is next to the target: it may be either.
         twin = rival > limits.twin
-        # Who is back may be the post that hid the target: what it looks like is not learnt.
-        probation = self._returns_unsure(relative) or self._since_return < _PROBATION
-        stranger = probation and template < _AS_BEFORE
-        doubted = ambiguous or covered or twin or stranger
+        doubted = ambiguous or covered or twin or self._is_stranger(relative)
         return Verdict.DOUBTED if old and doubted else Verdict.SEEN
 
 
@@ -293,4 +297,4 @@ def recognised(relative: Evidence) -> float:
 
 
 def _logistic(logit: float) -> float:
-    return 1 / (1 + math.exp(-max(logit, -_SURE)))
+    return 1 / (1 + math.exp(-max(logit, -_LARGEST)))

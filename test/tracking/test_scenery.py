@@ -132,4 +132,4 @@ def test_a_column_that_hides_the_target_is_not_followed(story, seed):
         return honesty(moments, config.rate).confident_wrong
 
     assert wrong(scenery=False) > 15
-    assert wrong() < 8
+    assert wrong() < 5

@@ -354,20 +354,25 @@ def hidden_for(frames):
     ],
     ids=str,
 )
-def test_who_is_back_but_not_for_sure_is_not_learnt_at_once(back, verdict):
+def test_who_is_back_but_not_for_sure_is_neither_learnt_nor_confident_at_once(back, verdict):
     trust = hidden_for(10)
-    assert trust.judge(back, 0.05) is verdict
-    assert trust.judge(back, 0.05) is verdict
-    assert trust.state is State.TRACKING
+    for _ in range(2):
+        assert trust.judge(back, 0.05) is verdict
+        assert (trust.score > 0.5) is (verdict is Verdict.SEEN)
+        assert trust.state is State.TRACKING
 
 
 def test_after_a_moment_who_is_back_is_learnt_as_it_is():
     trust = hidden_for(10)
     trust.judge(UNSURE, 0.05)
     later = Evidence(template=0.8, colour=0.7, rival=0.3)
-    verdicts = [trust.judge(later, 0.05) for _ in range(40)]
+    verdicts, scores = [], []
+    for _ in range(40):
+        verdicts.append(trust.judge(later, 0.05))
+        scores.append(trust.score)
     assert verdicts[:5] == [Verdict.DOUBTED] * 5
     assert verdicts[-20:] == [Verdict.SEEN] * 20
+    assert max(scores[:5]) <= 0.5 < min(scores[-20:])
 
 
 def test_a_frame_or_two_away_is_no_return():
