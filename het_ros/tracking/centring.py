@@ -28,7 +28,7 @@ _LEAST_SOFTNESS = 0.01
 # on disturbed starts are about 0.9 and 0.5.
 _BELIEVED = np.array([0.9, 0.4])
 # Frame n goes 1 / (n + _SLOW) of the way, at least _SLOWEST: what covers half moves it late.
-_SLOW = 33
+_SLOW = 20
 _SLOWEST = 0.005
 _FARTHEST = 0.25  # target's width and height
 
