@@ -96,7 +96,7 @@ class Appearance:
         """What the first frame says of a target at the layout's ``corner``, cells."""
         if self._first_look is None:
             return Correction(np.zeros(2), 1.0, None)
-        return self._first_look.correction(frame.planes, corner + self._half)
+        return self._first_look.correction(frame.planes, self.middle_of(corner))
 
     def _weighted(self, frame: Frame, scores: Features, expected: Floats) -> Measurement:
         """The paper's middle layer: one hypothesis a sub-patch, weighted by its score."""
@@ -138,7 +138,7 @@ class Appearance:
             x, y = (corner + self._offset) * self._config.cell
             self.colour.learn(frame.window.pixels, (float(x), float(y)))
         if self._config.first_look and self._first_look is None:
-            self._first_look = FirstLook(frame.planes, corner + self._half, self._cells)
+            self._first_look = FirstLook(frame.planes, self.middle_of(corner), self._cells)
 
     def centre(self, found: Measurement) -> None:
         """Let a box that lies beside its target move onto it."""
@@ -160,9 +160,13 @@ class Appearance:
         """(x, y), cells, of the target's centre from that of the sub-patches' layout."""
         return self._centring.offset if self._centring else np.zeros(2)
 
+    def middle_of(self, corner: Floats) -> Floats:
+        """The middle of the sub-patches' layout with its corner there, cells."""
+        return np.asarray(corner + self._half)
+
     def centre_of(self, corner: Floats) -> Floats:
         """The centre of a target with the layout's corner there, cells."""
-        return np.asarray(corner + self._half + self._offset)
+        return self.middle_of(corner) + self._offset
 
     def centre_in(self, window: Window, corner: Floats) -> Floats:
         """The same, image px."""

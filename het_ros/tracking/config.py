@@ -187,7 +187,9 @@ class TrackerConfig:
     )
     # Trust: shares of what the evidence was while all went well.
     trust: bool = parameter(
-        True, "judge whether the target is there; without it every frame is followed and learnt"
+        True,
+        "judge whether the target is there; without it every frame is followed and learnt, and "
+        "centring, scenery and colour_search rest",
     )
     hidden: float = parameter(
         0.47,

@@ -48,7 +48,6 @@ class Target:
         rng = np.random.default_rng(config.seed)
         cells, unit = grid(config, box)
         check_cost(config, cells)
-        self._half = np.array(cells) / 2
         self._sub_patches = draw_sub_patches(
             cells, config.sub_patches, config.sub_patch_fraction, rng
         )
@@ -229,14 +228,15 @@ class Target:
         """
         asked = self._size.asks_template()
         template = self._appearance.template(frame) if asked else None
-        return self._size.follow(frame.planes, corner + self._half, dt, template, drawn)
+        middle = self._appearance.middle_of(corner)
+        return self._size.follow(frame.planes, middle, dt, template, drawn)
 
     def _learn(
         self, frame: Frame, corner: Floats, chosen: NDArray[np.bool_], ratio: float
     ) -> None:
         """Learn the target at the layout's ``corner``, cells, ``ratio`` times as large."""
         self._appearance.learn(frame, corner, chosen)
-        self._size.learn(frame.planes, corner + self._half, ratio)
+        self._size.learn(frame.planes, self._appearance.middle_of(corner), ratio)
         if self._rotation:
             place = self._appearance.centre_of(corner) * self._config.cell
             self._rotation.learn(frame.window.pixels, place)
