@@ -13,6 +13,7 @@ from het_ros.tracking.centring import Centring
 from het_ros.tracking.colour import box_means, cell_means
 from het_ros.tracking.compressive import Features
 from het_ros.tracking.config import TrackerConfig
+from het_ros.tracking.evidence import Evidence
 from het_ros.tracking.first_look import Correction, FirstLook
 from het_ros.tracking.flow_prior import FlowPrior
 from het_ros.tracking.frame import Floats, Frame, Measurement
@@ -20,7 +21,6 @@ from het_ros.tracking.layers import Cells, base_ensembles, colour_model, whole
 from het_ros.tracking.response import find_peak
 from het_ros.tracking.sub_patches import SubPatches, to_be_updated
 from het_ros.tracking.template import Template, TemplateWriter
-from het_ros.tracking.trust import Evidence
 from het_ros.tracking.view import View
 from het_ros.tracking.window import Window
 

@@ -188,8 +188,7 @@ class TrackerConfig:
     # Trust: shares of what the evidence was while all went well.
     trust: bool = parameter(
         True,
-        "judge whether the target is there; without it every frame is followed and learnt, and "
-        "centring, scenery and colour_search rest",
+        "judge if it is there; else all is learnt; centring, scenery and colour_search need it",
     )
     hidden: float = parameter(
         0.47,

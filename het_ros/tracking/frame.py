@@ -10,8 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from het_ros.tracking.compressive import Features
+from het_ros.tracking.evidence import Evidence
 from het_ros.tracking.gray import Plane
-from het_ros.tracking.trust import Evidence
 from het_ros.tracking.window import Window
 
 Image = NDArray[np.uint8]

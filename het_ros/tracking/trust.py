@@ -9,25 +9,25 @@ there. That is judged here, from raw evidence relative to what it was while all 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from enum import Enum
 
 from het_ros.tracking.config import TrackerConfig
 from het_ros.tracking.estimate import State
+from het_ros.tracking.evidence import FAR, Evidence, probability, recognised
 
 _RUNNING_RATE = 0.05  # of the means of the evidence, a frame
 _LONGEST_DOUBT = 0.5  # s; who is doubted for longer is not followed any more
 _RETURN_COLOUR = 0.6  # share of the colours' mean below which nobody comes back
 _TWIN_TEMPLATE = 0.75  # share of the score's mean that makes a rival a twin
 _TWIN_TIME = 1.2  # s in which it may be either: after a twin, or a return far off
-_FAR = 0.7  # target sides from the prediction; a target that comes back there ...
-_RETURN_FAR = 0.85  # ... must be recognised with this probability
 _AWAY = 5  # frames hidden, from which on it is a return when somebody is seen again
+_RETURN_FAR = 0.85  # one far off must be recognised with this probability, ...
+_RETURN_RESIZED = 0.9  # one at another size with this, ...
+_WHOLE = 0.8  # ... and at least this share of the score's mean
 _UNSURE = 0.85  # probability of being recognised below which a return is on probation, ...
 _PROBATION = 1.0  # ... s in which only who ...
 _AS_BEFORE = 0.85  # ... is this much like the target (share of the score's mean) is learnt
-_RETURN_RESIZED = 0.9  # and one that comes back at another size with this, ...
-_WHOLE = 0.8  # ... and at least this share of the score's mean
 _ANY_RIVAL = 10.0  # shares beyond this say no more
 _YOUNG = 10  # frames in which the model has seen too little to be ambiguous about a rival
 _NEVER_BELOW = 0.2  # relative template score that nothing can excuse
@@ -39,14 +39,6 @@ _KNOWN_THERE = 0.8  # ... and recognised with this probability is not hidden, ..
 _BARELY_THERE = 0.4  # ... down to this share of ``hidden``, ...
 _UNCLEAR_TIME = 0.5  # ... unless nothing else has spoken for it for so long, s
 _SAME = 0.5  # likeness to the first frame that nothing else has near the target
-_LARGEST = 100.0  # a logit beyond which nothing changes but that exp() overflows
-# Logistic regression of "IoU over 0.5" on the evidence, over the frames of many real tracks.
-_BIAS, _BY_TEMPLATE, _BY_MEAN, _BY_COLOUR, _BY_RIVAL = -8.1, 4.0, 9.2, 1.0, -2.7
-# The same of "this is the hidden target", on its evidence as in :func:`recognised`.
-_KNOWN = (1.0, 4.0, 2.37, -3.72, -2.0, -1.0, -4.92)
-# Likeness to the first frame speaks for it from _HALF_LIKE on and below that against it, but less:
-# a target may have turned for good.
-_BY_LIKENESS, _LEAST_LIKE, _HALF_LIKE, _MOST_LIKE = 8.0, 0.2, 0.28, 0.6
 
 
 class Verdict(Enum):
@@ -55,34 +47,6 @@ class Verdict(Enum):
     SEEN = "seen"  # follow it and learn from it
     DOUBTED = "doubted"  # follow it with reserve, learn nothing
     HIDDEN = "hidden"  # the target is not there
-
-
-@dataclass(frozen=True)
-class Evidence:
-    """What speaks for the place that was found.
-
-    Attributes:
-        template: mean score of the base ensembles there, about 1 for the target as learnt.
-        colour: the colours' likelihood there, 0..1.
-        rival: highest mean score of the base ensembles elsewhere in the window.
-        moved: distance from the prediction, target sides.
-        away: distance from where the target was last seen, target sides.
-        spread: deviation of the sub-patches' weights there: of a target they agree.
-        likeness: correlation with the target of the first frame, -1..1, where that is known.
-    """
-
-    template: float
-    colour: float
-    rival: float
-    moved: float = 0.0
-    away: float = 0.0
-    spread: float = 0.0
-    likeness: float | None = None
-
-    @property
-    def alike(self) -> float:
-        """Shape and colours together."""
-        return self.template * self.colour
 
 
 class Trust:
@@ -142,7 +106,7 @@ class Trust:
             self.state = State.LOST if lost else State.COASTING
             self.score = 0.0 if lost else min(self.score, 0.5)
             return verdict
-        if self.hidden_frames >= _AWAY and relative.moved > _FAR:
+        if self.hidden_frames >= _AWAY and relative.moved > FAR:
             # Who looks the same may have come out elsewhere: time will tell.
             self._since_twin = 0.0
             self.score = min(self.score, 0.5)
@@ -215,7 +179,7 @@ class Trust:
         if self._is_in_place(relative) or _is_same(relative):
             return True
         least = limits.return_probability
-        if relative.moved > _FAR:
+        if relative.moved > FAR:
             least = max(least, _RETURN_FAR)
         alike = relative.alike >= limits.hidden
         return alike and relative.colour >= _RETURN_COLOUR and recognised(relative) >= least
@@ -252,49 +216,4 @@ class Trust:
 
 def _is_same(relative: Evidence) -> bool:
     """Whether it is not far off and looks as the target did in its first frame."""
-    return (relative.likeness or 0.0) >= _SAME and relative.moved <= _FAR
-
-
-def probability(template: float, mean: float, colour: float, rival: float) -> float:
-    """Probability that a box is right (IoU over 0.5), 0..1.
-
-    Args:
-        template: mean score of the base ensembles there.
-        mean: what that was on average while all went well; low for a target hard to tell.
-        colour: the colours' likelihood relative to its mean.
-        rival: best score elsewhere over the one there.
-    """
-    logit = (
-        _BIAS
-        + _BY_TEMPLATE * template
-        + _BY_MEAN * mean
-        + _BY_COLOUR * min(colour, 1.2)
-        + _BY_RIVAL * min(max(rival, 0.0), 1.5)
-    )
-    return _logistic(logit)
-
-
-def recognised(relative: Evidence) -> float:
-    """Probability that what was found is the target that was hidden, 0..1.
-
-    Args:
-        relative: evidence, template and colour over their means, rival over the best.
-    """
-    bias, by_template, by_colour, by_rival, by_moved, by_away, by_spread = _KNOWN
-    logit = (
-        bias
-        + by_template * relative.template
-        + by_colour * min(relative.colour, 1.2)
-        + by_rival * min(relative.rival, 1.5)
-        + by_moved * min(relative.moved, _FAR)
-        + by_away * min(relative.away, _FAR)
-        + by_spread * relative.spread
-    )
-    if relative.likeness is not None:
-        likeness = min(max(relative.likeness, _LEAST_LIKE), _MOST_LIKE)
-        logit += _BY_LIKENESS * (likeness - _HALF_LIKE)
-    return _logistic(logit)
-
-
-def _logistic(logit: float) -> float:
-    return 1 / (1 + math.exp(-max(logit, -_LARGEST)))
+    return (relative.likeness or 0.0) >= _SAME and relative.moved <= FAR
