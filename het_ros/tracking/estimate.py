@@ -42,7 +42,8 @@ class Estimate:
     Attributes:
         box: filtered box, px; in LOST the last prediction, not to be acted on.
         velocity: (vx, vy) of the box's centre, px/s.
-        covariance: (4, 4) float64 of the state [cx, cy, vx, vy], px^2, px^2/s, px^2/s^2.
+        covariance: (4, 4) float64 of the state [cx, cy, vx, vy], px^2, px^2/s, px^2/s^2; with what
+            a box misses its target by for good, which is more the lower the score.
         score: 0..1, how far the box can be trusted; 0 in LOST.
         state: TRACKING, COASTING or LOST.
         patches: the Q sub-patches of this frame; empty when nothing was measured.

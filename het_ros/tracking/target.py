@@ -16,6 +16,7 @@ from het_ros.tracking.colour_search import ColourSearch
 from het_ros.tracking.config import TrackerConfig
 from het_ros.tracking.cost import check_cost
 from het_ros.tracking.estimate import Estimate, Patch, State
+from het_ros.tracking.evidence import lasting_deviation
 from het_ros.tracking.frame import Floats, Frame, Image, Measurement
 from het_ros.tracking.inertia import Inertia
 from het_ros.tracking.layers import grid, motion_model
@@ -154,11 +155,14 @@ class Target:
 
     def estimate(self, score: float, state: State, patches: tuple[Patch, ...] = ()) -> Estimate:
         """What the motion model holds, as an estimate."""
-        velocity = self._motion.velocity
+        velocity, covariance, box = self._motion.velocity, self._motion.covariance, self.box
         if self._inertia:
             carried = self._inertia.carried
             velocity = velocity[0] + float(carried[0]), velocity[1] + float(carried[1])
-        return Estimate(self.box, velocity, self._motion.covariance, score, state, patches)
+        if self._trust:
+            lasting = lasting_deviation(score) * np.array([box.w, box.h])
+            covariance[:2, :2] += np.diag(lasting**2)
+        return Estimate(box, velocity, covariance, score, state, patches)
 
     def _go_with_camera(self, image: Image, dt: float) -> None:
         """Move what is kept of the target's place by what the camera did, where that counts."""

@@ -71,6 +71,17 @@ def hard(request, sequence):
     return request.param, frames, track(frames)
 
 
+def test_the_covariance_covers_what_the_centre_is_off_by(crossing, hard):
+    """95 % of the frames on the target are to lie within its 95 % bound (chi square, 2: 5.99)."""
+    for frames, estimates in (crossing, hard[1:]):
+        inside = []
+        for estimate, box in zip(estimates[1:], frames.boxes[1 : len(estimates)], strict=True):
+            if estimate.state is State.TRACKING and estimate.box.iou(box) > 0:
+                off = np.subtract(estimate.box.centre, box.centre)
+                inside.append(off @ np.linalg.solve(estimate.covariance[:2, :2], off) < 5.99)
+        assert np.mean(inside) > 0.9
+
+
 def test_occlusion_and_fast_motion_are_survived(hard):
     _, frames, estimates = hard
     found = overlaps(frames, estimates)
