@@ -188,7 +188,7 @@ class TrackerConfig:
     # Trust: shares of what the evidence was while all went well.
     trust: bool = parameter(
         True,
-        "judge if it is there; else all is learnt; centring, scenery and colour_search need it",
+        "judge whether the target is there; centring, scenery and colour_search rest without it",
     )
     hidden: float = parameter(
         0.47,
