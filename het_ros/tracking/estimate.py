@@ -12,6 +12,10 @@ from numpy.typing import NDArray
 
 from het_ros.tracking.box import Box
 
+# Deviation of a box on its target that is sure, in its sides, and what doubt adds to it. Over the
+# frames of many real tracks it was .06 at a score of .95, .10 at .75, .13 at .55 and .20 at .35.
+_LASTING, _BY_DOUBT = 0.05, 0.2
+
 
 class State(Enum):
     """Where the tracker stands."""
@@ -55,3 +59,15 @@ class Estimate:
     score: float
     state: State
     patches: tuple[Patch, ...] = ()
+
+
+def lasting_deviation(score: float) -> float:
+    """Deviation of a box's centre from its target's that no filter averages out.
+
+    What a box misses its target by is learnt with it and stays. In x it is this much of the box's
+    width, in y of its height.
+
+    Args:
+        score: probability that the box is right, 0..1.
+    """
+    return _LASTING + _BY_DOUBT * (1 - score)

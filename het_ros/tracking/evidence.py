@@ -1,6 +1,6 @@
 # Copyright 2026 het_ros maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""What speaks for a place, how probable that makes it the target's, and how exact its box."""
+"""What speaks for a place, and how probable that makes it the target's."""
 
 from __future__ import annotations
 
@@ -16,10 +16,6 @@ _KNOWN = (1.0, 4.0, 2.37, -3.72, -2.0, -1.0, -4.92)
 # Likeness to the first frame speaks for it from _HALF_LIKE on and below that against it, but less:
 # a target may have turned for good.
 _BY_LIKENESS, _LEAST_LIKE, _HALF_LIKE, _MOST_LIKE = 8.0, 0.2, 0.28, 0.6
-
-# Deviation of a box on its target that is sure, in its sides, and what doubt adds to it. Over the
-# frames of many real tracks it was .06 at a score of .95, .10 at .75, .13 at .55 and .20 at .35.
-_LASTING, _BY_DOUBT = 0.05, 0.2
 
 
 @dataclass(frozen=True)
@@ -89,18 +85,6 @@ def recognised(relative: Evidence) -> float:
         likeness = min(max(relative.likeness, _LEAST_LIKE), _MOST_LIKE)
         logit += _BY_LIKENESS * (likeness - _HALF_LIKE)
     return _logistic(logit)
-
-
-def lasting_deviation(score: float) -> float:
-    """Deviation of a box's centre from its target's that no filter averages out.
-
-    What a box misses its target by is learnt with it and stays. In x it is this much of the box's
-    width, in y of its height.
-
-    Args:
-        score: probability that the box is right, 0..1.
-    """
-    return _LASTING + _BY_DOUBT * (1 - score)
 
 
 def _logistic(logit: float) -> float:

@@ -15,8 +15,7 @@ from het_ros.tracking.box import Box
 from het_ros.tracking.colour_search import ColourSearch
 from het_ros.tracking.config import TrackerConfig
 from het_ros.tracking.cost import check_cost
-from het_ros.tracking.estimate import Estimate, Patch, State
-from het_ros.tracking.evidence import lasting_deviation
+from het_ros.tracking.estimate import Estimate, Patch, State, lasting_deviation
 from het_ros.tracking.frame import Floats, Frame, Image, Measurement
 from het_ros.tracking.inertia import Inertia
 from het_ros.tracking.layers import grid, motion_model

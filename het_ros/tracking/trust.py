@@ -106,11 +106,11 @@ class Trust:
             self.state = State.LOST if lost else State.COASTING
             self.score = 0.0 if lost else min(self.score, 0.5)
             return verdict
-        if self.hidden_frames >= _AWAY and relative.moved > FAR:
-            # Who looks the same may have come out elsewhere: time will tell.
+        elsewhere = self.hidden_frames >= _AWAY and relative.moved > FAR
+        if elsewhere:
+            # Who looks the same may have come out there: time will tell.
             self._since_twin = 0.0
-            self.score = min(self.score, 0.5)
-        if self._is_stranger(relative):
+        if elsewhere or self._is_stranger(relative):
             self.score = min(self.score, 0.5)
         unsure = self._returns_unsure(relative)
         self._since_return = 0.0 if unsure else self._since_return + dt
@@ -165,6 +165,10 @@ class Trust:
         known = recognised(relative) >= _KNOWN_THERE or self._is_clear(relative)
         return barely and here and known
 
+    def _is_known_here(self, relative: Evidence) -> bool:
+        """Whether it is the target near where it must be, however little of it is left."""
+        return self._is_in_place(relative) or _is_same(relative)
+
     def _rate(self, relative: Evidence, dt: float) -> float:
         """The score of a frame; beside a twin, and for a while after it, nobody is sure."""
         score = self._score(relative)
@@ -176,7 +180,7 @@ class Trust:
     def _is_back(self, relative: Evidence) -> bool:
         """Whether a hidden target has come back; farther off only on stronger evidence."""
         limits = self._limits
-        if self._is_in_place(relative) or _is_same(relative):
+        if self._is_known_here(relative):
             return True
         least = limits.return_probability
         if relative.moved > FAR:
@@ -203,7 +207,7 @@ class Trust:
         if old and relative.alike < limits.hidden:
             # Where the light changes the colours do too, but nothing else looks like the target.
             clear = relative.alike >= _BARELY * limits.hidden and self._is_clear(relative)
-            there = clear or self._is_in_place(relative) or _is_same(relative)
+            there = clear or self._is_known_here(relative)
             return Verdict.DOUBTED if there else Verdict.HIDDEN
         ambiguous = template < limits.doubt_template and rival > limits.doubt_rival
         # A post that comes in from the side takes the colours away first.

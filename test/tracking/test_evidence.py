@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 import pytest
 
-from het_ros.tracking.evidence import FAR, Evidence, lasting_deviation, probability, recognised
+from het_ros.tracking.evidence import FAR, Evidence, probability, recognised
 
 BACK = {"template": 0.8, "colour": 1.0, "rival": 0.3}
 
@@ -40,9 +40,3 @@ def test_far_is_no_farther_than_far(way):
 def test_no_evidence_breaks_a_probability(value):
     assert 0 <= probability(value, abs(value), abs(value), value) <= 1
     assert 0 <= recognised(Evidence(value, abs(value), value, likeness=value)) <= 1
-
-
-def test_less_sure_is_less_exact():
-    deviations = [lasting_deviation(score) for score in (1.0, 0.8, 0.5, 0.0)]
-    assert deviations == sorted(set(deviations))
-    assert deviations[0] > 0
