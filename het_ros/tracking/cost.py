@@ -7,6 +7,7 @@ from __future__ import annotations
 import math
 
 from het_ros.tracking.config import TrackerConfig
+from het_ros.tracking.features.extractor import WindowConfig
 
 
 def check_cost(config: TrackerConfig, cells: tuple[float, float]) -> None:
@@ -26,20 +27,14 @@ def check_cost(config: TrackerConfig, cells: tuple[float, float]) -> None:
 
 
 def megabytes(config: TrackerConfig, cells: tuple[float, float]) -> float:
-    """About what window, maps and template take, MB; rather too much than too little.
+    """About what window, maps and statistics take, MB; rather too much than too little.
 
     Args:
         config: parameters.
         cells: (w, h) of the target in cells of the search window.
     """
-    margin = 2 * (math.ceil(config.search_radius / config.cell) + 1)
+    cell, channels = WindowConfig().cell, 10
+    margin = 2 * (math.ceil(config.search_radius / cell) + 1)
     places = (cells[0] + margin) * (cells[1] + margin)
-    feature = 8 if config.base_ensemble == "ridge" else 12
-    place = (
-        feature * config.features
-        + 16 * config.sub_patches
-        + 16 * len(config.channels)
-        + 16 * config.cell**2
-    )
-    template = 4 * config.features * cells[0] * cells[1] if config.size_template else 0
-    return (places * place + 16 * config.features**2 + template) / 1e6
+    place = 12 * config.features + 16 * config.sub_patches + 16 * channels + 16 * cell**2
+    return (places * place + 32 * config.features**2) / 1e6

@@ -1,33 +1,65 @@
 # Copyright 2026 het_ros maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""The model of one target: how a frame goes through the layers, and how it is learnt."""
+"""The model of one target: how a frame goes through the layers."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+
+from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
-from het_ros.tracking.appearance import Appearance
+from het_ros.tracking.bottom.colour import ColourEnsemble
+from het_ros.tracking.bottom.ensemble import Look, Plane
+from het_ros.tracking.bottom.flow import FlowEnsemble
+from het_ros.tracking.bottom.network import NetworkEnsemble, Proposal
+from het_ros.tracking.bottom.sub_patches import SubPatchEnsembles, draw_layout
 from het_ros.tracking.box import Box
-from het_ros.tracking.colour_search import ColourSearch
 from het_ros.tracking.config import TrackerConfig
 from het_ros.tracking.cost import check_cost
 from het_ros.tracking.estimate import Estimate, Patch, State, lasting_deviation
-from het_ros.tracking.frame import Floats, Frame, Image, Measurement
-from het_ros.tracking.inertia import Inertia
-from het_ros.tracking.layers import grid, motion_model
-from het_ros.tracking.rotation import Rotation
-from het_ros.tracking.scenery import Scenery
-from het_ros.tracking.search import by_colour, other_size, search_centre
-from het_ros.tracking.size import Size
-from het_ros.tracking.sub_patches import draw_sub_patches
-from het_ros.tracking.trust import Trust, Verdict
-from het_ros.tracking.view import View
+from het_ros.tracking.features.extractor import FeatureExtractor, target_cells
+from het_ros.tracking.middle.size import Size
+from het_ros.tracking.middle.voting import Peak, best_place, distractor
+from het_ros.tracking.top.background import Background
+from het_ros.tracking.top.confidence import Confidence, Decision
+from het_ros.tracking.top.ego_motion import EgoMotion
+from het_ros.tracking.top.kalman import AdaptiveKalman
+from het_ros.tracking.top.redetection import Redetection
 
-Witness = Callable[[Box], bool]
+Floats = NDArray[np.float64]
+Image = NDArray[np.uint8]
+# Least and most weight of a sub-patch, as in the paper.
+_WEIGHTS = 0.1, 0.9
+
+
+@dataclass(frozen=True)
+class _Found:
+    """The best place of a look.
+
+    Attributes:
+        look: that it was found in.
+        peak: the place, cells.
+        box: the target there, image px.
+        score: mean score of the sub-patches there; ``distractor`` the highest elsewhere.
+        colour: likelihood of the colours there.
+        weights: (Q,) of the sub-patches there.
+    """
+
+    look: Look
+    peak: Peak
+    box: Box
+    score: float
+    distractor: float
+    colour: float
+    weights: Floats
+    proposal: Proposal | None = None
+    agreement: float = 1.0
+    network_score: float = 0.0
 
 
 class Target:
@@ -41,211 +73,270 @@ class Target:
     Raises:
         ValueError: it would take more memory than ``most_memory``.
     """
+    P = dict(agree=0.5, w=0.7, lam=0.5, gain=0.25)
 
     def __init__(self, config: TrackerConfig, image: Image, box: Box) -> None:
-        self._config = config
-        self._everyone = np.ones(config.sub_patches, bool)
         rng = np.random.default_rng(config.seed)
-        cells, unit = grid(config, box)
+        cells = target_cells((box.w, box.h), config.working_side)
         check_cost(config, cells)
-        self._sub_patches = draw_sub_patches(
-            cells, config.sub_patches, config.sub_patch_fraction, rng
+        layout = draw_layout(cells, config.sub_patches, config.sub_patch_fraction, rng)
+        self._layout = layout
+        self._extractor = FeatureExtractor(
+            image,
+            cells,
+            layout.size,
+            config.features,
+            config.search_radius,
+            config.gray_below,
+            rng,
         )
-        self._view = View(config, image, box, cells, unit, self._sub_patches.size, rng)
-        self._appearance = Appearance(config, cells, self._sub_patches, self._view)
-        self._size = Size(config, box, cells)
-        sides = [side * config.cell for side in cells]
-        self._rotation = Rotation(*sides) if config.rotation else None
-        self._trust = Trust(config) if config.trust else None
-        self._motion = motion_model(config, box)
-        self._seen_at = np.array(box.centre)
-        self._inertia = Inertia(image, self._seen_at) if config.camera_motion else None
-        remembers = config.trust and config.scenery
-        self._scenery = Scenery(image.shape, math.sqrt(box.area)) if remembers else None
-        by_colours = config.colour_search and config.colour_weight
-        self._colour_search = ColourSearch() if by_colours else None
-        frame = self._view.look(image, self._seen_at, 1.0)
-        corner = self._appearance.corner_in(frame.window, self._motion.centre)
-        self._learn(frame, corner, self._everyone, 1.0)
+        cell, gray = self._extractor.cell, self._extractor.gray
+        rates = config.learning_rate, config.fast_learning_rate
+        self._patches = SubPatchEnsembles(layout, cells, rates, config.ridge, config.first_frame)
+        self._colour = ColourEnsemble((cells[0] * cell, cells[1] * cell), cell, config.colour_rate)
+        self._flow = FlowEnsemble(cell)
+        self._ensembles = (self._patches, self._colour, self._flow)
+        # In gray images blur takes texture away as it does shape: the two must not count twice.
+        self._colour_power = 0.7 if gray else 1.0
+        self._config = config
+        self._size = Size(
+            np.array([box.w, box.h]), cells, config.scale_rate, config.first_frame,
+            config.growth_limit,
+        )
+        side = math.sqrt(box.area)
+        self._motion = AdaptiveKalman(
+            np.array(box.centre),
+            config.acceleration * side,
+            config.measurement_noise * side,
+            config.nominal_dt,
+            config.longest_dt,
+        )
+        self._network = NetworkEnsemble(Path(config.network)) if config.network else None
+        if self._network:
+            self._network.start(image, box)
+        self._ego_motion = EgoMotion(image)
+        self._background = Background(image.shape, side) if config.background else None
+        self._redetection = Redetection()
+        self._confidence = Confidence(config.lost_after)
+        self._last_seen = np.array(box.centre)
+        self._score = 1.0
+        look = self._look(image, np.array(box.centre))
+        self._learn(look, box, 1.0, 1.0)
 
-    def follow(self, image: Image, dt: float, witness: Witness | None = None) -> Estimate:
-        """One frame: predict, detect, combine, judge, correct, update the model.
+    @property
+    def confidence(self) -> Confidence:
+        """What judges the target; its ``features`` are those of the last frame."""
+        return self._confidence
+
+    def follow(
+        self,
+        image: Image,
+        dt: float,
+        witness: Callable[[Box], bool] | None = None,
+        candidates: Sequence[Box] = (),
+    ) -> Estimate:
+        """One frame: predict, look, vote, judge, correct, learn.
 
         Args:
             image: (H, W, 3) or (H, W) uint8.
             dt: time since the last frame, s.
-            witness: see :meth:`HierarchicalEnsembleTracker.update`.
+            witness, candidates: see :meth:`HierarchicalEnsembleTracker.update`.
         """
-        self._motion.predict(dt)
         step = self._motion.step(dt)
-        self._go_with_camera(image, step)
-        if self._rotation:
-            self._rotation.predict(step)
-        frame, found = self._search(image)
-        centre = self._appearance.centre_in(frame.window, found.corner)
-        verdict = Verdict.SEEN
-        hidden = bool(self._trust and self._trust.hidden_frames)
-        if self._trust and found.evidence:
-            box = self._box(centre, frame.growth)
-            witnessed = witness is None or witness(box)
-            if witnessed and self._scenery:
-                witnessed = not self._scenery.shows(image, box)
-            verdict = self._trust.judge(found.evidence, step, witnessed)
-        if verdict is Verdict.HIDDEN:
+        self._predict(image, dt, step)
+        found = self._find(self._look(image, self._search_place(image, candidates)))
+        decision = self._judge(found, image, step, witness)
+        self._score = decision.score
+        if not decision.follow:
             self._coast()
+            return self.estimate(decision.score, decision.state)
+        self._correct(found, decision)
+        self._update_model(found, decision, image, step)
+        return self.estimate(decision.score, decision.state, self._found_patches(found))
+
+    def _predict(self, image: Image, dt: float, step: float) -> None:
+        """Move the motion model on, and what is known of the scene with the camera."""
+        self._motion.predict(dt)
+        shift = self._ego_motion.follow(image, step)
+        if self._background:
+            self._background.move(shift)
+
+    def _search_place(self, image: Image, candidates: Sequence[Box]) -> Floats:
+        """(x, y), image px: where the search window goes."""
+        size = self._size.size
+        likelihood = None
+        if self._config.colour_weight:
+
+            def likelihood(pixels: Image) -> NDArray[np.float32]:
+                return self._colour.likelihood(self._extractor.in_kind(pixels))
+
+        return self._redetection.next_place(
+            self._confidence.unseen,
+            self._motion.centre,
+            self._box(self._last_seen),
+            self._extractor.reach(size),
+            image,
+            likelihood,
+            candidates,
+        )
+
+    def _look(self, image: Image, centre: Floats) -> Look:
+        """The search window around ``centre`` (x, y), image px."""
+        frame = self._extractor.look(image, centre, self._size.size)
+        cells = self._extractor.cells
+        places = self._layout.places(frame.features.shape[1:], cells)
+        return Look(
+            frame, image, self._motion.centre, self._size.size, cells, places, self._score
+        )
+
+    def _find(self, look: Look) -> _Found:
+        """All base ensembles vote; the best place is the target's if anything is."""
+        config = self._config
+        template = self._patches.vote(look)
+        colour = self._colour.vote(look)
+        response = (1 - config.colour_weight) * template + config.colour_weight * colour
+        near = self._flow.vote(look)
+        if near is not None:
+            # A factor: what slides over the target moves smoothly too, but does not look like it.
+            response = response * (1 + config.flow_weight * near)
+        peak = best_place(response)
+        if self._network is None:
+            return self._at(look, peak, template, colour)
+        return self._fused(look, peak, template, colour, response)
+
+    def _at(self, look: Look, peak: Peak, template: Plane, colour: Plane) -> _Found:
+        """A target with its corner at a peak, and what speaks for it."""
+        row, column = peak.row, peak.column
+        return _Found(
+            look,
+            peak,
+            self._box(look.centre_of(peak.corner)),
+            float(template[row, column]),
+            distractor(template, peak, look.cells),
+            float(colour[row, column]) ** self._colour_power,
+            self._patches.scores_at(row, column),
+        )
+
+    def _fused(
+        self, look: Look, peak: Peak, template: Plane, colour: Plane, response: Plane
+    ) -> _Found:
+        """The place that network and ensembles agree on, or the likelier of their two places."""
+        P = self.P
+        assert self._network
+        side = float(np.sqrt(look.size.prod()))
+        ours = look.centre_of(peak.corner)
+        at = look.expected if not self._confidence.unseen else look.frame.window.to_image(np.array(look.frame.channels[0].shape[::-1]) / 2)
+        proposal = self._network.propose(look, at)
+        theirs = np.array(proposal.box.centre)
+        apart = float(np.hypot(*(theirs - ours))) / side
+        here = proposal.score_at(ours, 0.3 * side)
+        corner = look.corner_of(theirs)
+        row, column = (round(float(v)) for v in (corner[1], corner[0]))
+        inside = 0 <= row < look.places[0] and 0 <= column < look.places[1]
+        there = float(response[max(0, row - 2) : row + 3, max(0, column - 2) : column + 3].max()) if inside else 0.0
+        best = float(response[peak.row, peak.column])
+        self.probe = (apart, proposal.score, here, best, there, self._confidence._score)
+        if apart < P["agree"]:
+            w = P["w"]
+            corner = look.corner_of(w * theirs + (1 - w) * ours)
+            chosen = proposal
+        elif P["lam"] * (best - there) / max(self._confidence._score, 0.05) > proposal.score - here or not inside:
+            found = self._at(look, peak, template, colour)
+            return replace(found, proposal=None, agreement=min(apart, 1.0), network_score=here)
         else:
-            self._move_to(centre, frame, found, step, hidden)
-        if not self._trust and not self.box.touches_image(image.shape[1], image.shape[0]):
-            return self.estimate(0.0, State.LOST)
-        score = self._update_model(frame, found, verdict, step)
-        patches: tuple[Patch, ...] = ()
-        if verdict is Verdict.HIDDEN:
-            self._appearance.flow.forget()
-        else:
-            patches = self._sub_patches.in_image(frame.window, found.patch_corners, found.omega)
-            upright = self._size.box(self._motion.centre)
-            self._appearance.flow.remember(frame.window, upright, step, score)
-            if self._scenery:
-                self._scenery.remember(image, self.box, step)
-        state = self._trust.state if self._trust else State.TRACKING
-        return self.estimate(score, state, patches)
+            chosen = proposal
+        row, column = (min(max(round(float(v)), 0), n - 1) for v, n in zip(corner[::-1], look.places, strict=True))
+        top, left = max(0, row - 2), max(0, column - 2)
+        near = template[top : row + 3, left : column + 3]
+        r, c = divmod(int(near.argmax()), near.shape[1])
+        moved = Peak(corner, top + r, left + c)
+        found = self._at(look, moved, template, colour)
+        return replace(found, proposal=chosen, agreement=min(apart, 1.0), network_score=proposal.score)
+
+    def _judge(
+        self,
+        found: _Found,
+        image: Image,
+        dt: float,
+        witness: Callable[[Box], bool] | None,
+    ) -> Decision:
+        """Whether it is the target, or something else that stands there."""
+        occluded = witness is not None and not witness(found.box)
+        if not occluded and self._background:
+            occluded = self._background.shows(image, found.box)
+        away = np.array(found.box.centre) - found.look.expected
+        return self._confidence.judge(
+            found.score,
+            found.colour,
+            found.distractor,
+            float(np.hypot(*away)) / math.sqrt(found.box.area),
+            float(found.weights.std()),
+            occluded,
+            dt,
+            (found.network_score, found.agreement) if self._network else None,
+        )
 
     def _coast(self) -> None:
         """The target is not there: go on as predicted."""
         self._motion.coast()
-        if self._inertia:
-            self._inertia.forget()
-        if self._rotation:
-            self._rotation.coast()
+        for ensemble in self._ensembles:
+            ensemble.forget()
 
-    def _move_to(
-        self, centre: Floats, frame: Frame, found: Measurement, dt: float, hidden: bool
-    ) -> None:
-        """The target is at ``centre``, px; ``hidden``: it was not seen in the last frame."""
-        if hidden:
+    def _correct(self, found: _Found, decision: Decision) -> None:
+        """The target is in the box that was found: the motion model takes it in."""
+        centre = np.array(found.box.centre)
+        if decision.returned:
             self._motion.restart(centre)
         else:
-            self._motion.correct(centre, float(found.omega.mean()))
-        if self._inertia:
-            side = self._size.side(self._size.growth)
-            self._motion.change_velocity(self._inertia.observe(centre, side, dt))
-        if self._colour_search:
-            self._colour_search.forget()
-        self._seen_at = centre
-        self._size.growth = frame.growth
-        if self._rotation:
-            place = self._appearance.centre_of(found.corner) * self._config.cell
-            self._rotation.observe(frame.window.pixels, place, dt)
+            self._motion.correct(centre, float(np.clip(found.weights, *_WEIGHTS).mean()))
+        self._redetection.forget()
+        self._last_seen = centre
 
-    @property
-    def box(self) -> Box:
-        """The target's box by the motion model, px."""
-        return self._box(self._motion.centre)
+    def _update_model(
+        self, found: _Found, decision: Decision, image: Image, dt: float
+    ) -> None:
+        """Size, base ensembles and background follow the target, as far as it is believed."""
+        ratio, centre = 1.0, np.array(found.box.centre)
+        if decision.weight:
+            middle = found.peak.corner + np.array(found.look.cells) / 2
+            ratio = self._size.follow(found.look.frame, middle, self._flow.flow, dt)
+        if found.proposal:
+            p = found.proposal
+            gain = self.P["gain"] * p.score * p.steady
+            before = self._size.size
+            self._size.size = before * np.exp(gain * np.log(np.array([p.box.w, p.box.h]) / before))
+            ratio *= math.sqrt(float((self._size.size / before).prod()))
+        box = self._box(centre)
+        self._learn(found.look, box, ratio, decision.weight)
+        if self._background and decision.state is State.TRACKING:
+            self._background.remember(image, box, dt)
 
-    def _box(self, centre: Floats, growth: float | None = None) -> Box:
-        """The upright box around the target at ``centre``, px, turned as it is now."""
-        box = self._size.box(centre, growth)
-        return box.turned(self._angle) if self._angle else box
+    def _learn(self, look: Look, box: Box, ratio: float, weight: float) -> None:
+        for ensemble in self._ensembles:
+            ensemble.learn(look, box, weight)
+        if weight:
+            middle = look.frame.window.to_window(np.array(box.centre))
+            self._size.learn(look.frame, middle, ratio, weight)
 
-    @property
-    def _angle(self) -> float:
-        """rad, clockwise: how far windows are turned."""
-        return self._rotation.angle if self._rotation else 0.0
+    def _found_patches(self, found: _Found) -> tuple[Patch, ...]:
+        """The sub-patches where they were found, image px, for drawing."""
+        window, size = found.look.frame.window, np.array(self._layout.size)
+        width, height = (size / np.array(window.scale)).tolist()
+        centres = window.to_image(found.peak.corner + self._layout.offsets + size / 2)
+        weights = np.clip(found.weights, *_WEIGHTS)
+        return tuple(
+            Patch(Box.from_centre(x, y, width, height), weight)
+            for (x, y), weight in zip(centres.tolist(), weights.tolist(), strict=True)
+        )
+
+    def _box(self, centre: Floats) -> Box:
+        """The target's box around ``centre`` (x, y), px, at its present size."""
+        (x, y), (width, height) = centre.tolist(), self._size.size.tolist()
+        return Box.from_centre(x, y, width, height)
 
     def estimate(self, score: float, state: State, patches: tuple[Patch, ...] = ()) -> Estimate:
         """What the motion model holds, as an estimate."""
-        velocity, covariance, box = self._motion.velocity, self._motion.covariance, self.box
-        if self._inertia:
-            carried = self._inertia.carried
-            velocity = velocity[0] + float(carried[0]), velocity[1] + float(carried[1])
-        if self._trust:
-            lasting = lasting_deviation(score) * np.array([box.w, box.h])
-            covariance[:2, :2] += np.diag(lasting**2)
-        return Estimate(box, velocity, covariance, score, state, patches)
-
-    def _go_with_camera(self, image: Image, dt: float) -> None:
-        """Move what is kept of the target's place by what the camera did, where that counts."""
-        if self._inertia:
-            shift = self._inertia.shift(image, dt)
-            self._motion.shift(shift)
-            self._seen_at = self._seen_at + shift
-            if self._scenery:
-                self._scenery.move(self._inertia.camera_shift)
-
-    def _search(self, image: Image) -> tuple[Frame, Measurement]:
-        """Look for the target; for one that is hidden for long also elsewhere at another size."""
-        hidden = self._trust.hidden_frames if self._trust else 0
-        first = self._look_for(image, hidden, 1.0, self._angle)
-        if self._rotation and self._angle and not hidden:
-            upright = self._look_for(image, hidden, 1.0, again=True)
-            if _shape_of(upright) <= _shape_of(first):
-                return first
-            self._rotation.forget()
-            return upright
-        size = other_size(hidden, self._trust.hidden_for) if self._trust else None
-        if size is None:
-            return first
-        second = self._look_for(image, hidden + 1, size, self._angle)
-        assert self._trust and first[1].evidence and second[1].evidence
-        surely = self._trust.is_surely_back(second[1].evidence, first[1].evidence)
-        return second if surely else first
-
-    def _look_for(
-        self, image: Image, hidden: int, size: float, angle: float = 0.0, again: bool = False
-    ) -> tuple[Frame, Measurement]:
-        """One look at the place that is ``hidden``'s turn, at ``size`` times the present size."""
-        growth = self._size.growth * size
-        reach = self._view.reach(growth)
-        if self._colour_search and by_colour(hidden):
-            box = self._size.box(self._seen_at, growth)
-            colours = self._view.colours
-            centre = self._colour_search.next_place(
-                image, colours, self._appearance.colour, box, reach
-            )
-        else:
-            centre = search_centre(hidden, self._motion.centre, self._seen_at, reach)
-        frame = self._view.look(image, centre, growth, angle, hidden > 0, again)
-        side = self._size.side(growth)
-        return frame, self._appearance.find(frame, self._motion.centre, self._seen_at, side)
-
-    def _update_model(
-        self, frame: Frame, found: Measurement, verdict: Verdict, dt: float
-    ) -> float:
-        """The three update mechanisms; returns the score of the estimate."""
-        if self._trust:
-            if verdict is Verdict.SEEN:
-                ratio = self._follow_size(frame, found.corner, dt, found.ratio)
-                self._learn(frame, found.corner, self._everyone, ratio)
-                self._appearance.centre(found)
-            return self._trust.score
-        corner = self._appearance.corner_in(frame.window, self._motion.centre)
-        score, chosen = self._appearance.score_at(frame, found, corner)
-        ratio = self._follow_size(frame, corner, dt, found.ratio)
-        self._learn(frame, corner, chosen, ratio)
-        return score
-
-    def _follow_size(self, frame: Frame, corner: Floats, dt: float, drawn: float) -> float:
-        """Take over the change of size; returns the ratio to the size before.
-
-        ``drawn`` is the ratio by which the first frame draws it.
-        """
-        asked = self._size.asks_template()
-        template = self._appearance.template(frame) if asked else None
-        middle = self._appearance.middle_of(corner)
-        return self._size.follow(frame.planes, middle, dt, template, drawn)
-
-    def _learn(
-        self, frame: Frame, corner: Floats, chosen: NDArray[np.bool_], ratio: float
-    ) -> None:
-        """Learn the target at the layout's ``corner``, cells, ``ratio`` times as large."""
-        self._appearance.learn(frame, corner, chosen)
-        self._size.learn(frame.planes, self._appearance.middle_of(corner), ratio)
-        if self._rotation:
-            place = self._appearance.centre_of(corner) * self._config.cell
-            self._rotation.learn(frame.window.pixels, place)
-
-
-def _shape_of(look: tuple[Frame, Measurement]) -> float:
-    """Mean score of the sub-patches in a look, 0 where nothing judges it."""
-    evidence = look[1].evidence
-    return evidence.template if evidence else 0.0
+        box, covariance = self._box(self._motion.centre), self._motion.covariance
+        lasting = lasting_deviation(score) * np.array([box.w, box.h])
+        covariance[:2, :2] += np.diag(lasting**2)
+        return Estimate(box, self._motion.velocity, covariance, score, state, patches)

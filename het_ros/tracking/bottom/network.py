@@ -1,0 +1,113 @@
+# Copyright 2026 het_ros maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""A siamese network as one more base ensemble: it knows shapes, sizes and how they change.
+
+It is given the first box and never learns again. What it proposes is one of its own boxes, chosen
+as its authors do: boxes of another size or aspect than the last count less, and so do places far
+from the prediction.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from pathlib import Path
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from het_ros.tracking.bottom.ensemble import Look
+from het_ros.tracking.bottom.siamese import Siamese
+from het_ros.tracking.box import Box
+from het_ros.tracking.features.channels import Pixels, bgr_of
+
+Floats = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class NetworkConfig:
+    """Constants of the proposal, of NanoTrack v3 (github.com/HonglinChu/SiamTrackers).
+
+    Attributes:
+        window: share of the Hann window around the prediction.
+        penalty: for a change of size and aspect.
+        smallest: side of a box, px (geometry).
+    """
+
+    window: float = 0.455
+    penalty: float = 0.138
+    smallest: float = 2.0
+
+
+@dataclass(frozen=True)
+class Proposal:
+    """What the network says of a frame.
+
+    Attributes:
+        box: its best box, image px.
+        score: that box's own probability, 0..1; it is high on anything like a thing.
+        steady: 0..1, near 1 for a box of about the size and aspect of the last.
+        scores: (n, n) float32, probabilities of all its places.
+        centres: (n, n, 2), image px, of their boxes.
+    """
+
+    box: Box
+    score: float
+    steady: float
+    scores: NDArray[np.float32]
+    centres: Floats
+
+    def score_at(self, centre: Floats, within: float) -> float:
+        """Highest probability of a box whose centre lies within so many px of a place; or 0."""
+        near = np.hypot(*np.moveaxis(self.centres - centre, -1, 0)) <= within
+        return float(self.scores[near].max()) if near.any() else 0.0
+
+
+class NetworkEnsemble:
+    """Looks for the target of its first box.
+
+    Args:
+        folder: of the network's files; see :meth:`Siamese.read`.
+
+    Raises:
+        ValueError: the files are missing or no such network.
+    """
+
+    def __init__(self, folder: Path) -> None:
+        self._config = NetworkConfig()
+        self._network = Siamese.read(folder)
+        hann = np.hanning(self._network.places)
+        self._window = np.outer(hann, hann)
+
+    def start(self, image: Pixels, box: Box) -> None:
+        """Take the target in ``box`` of the image, (H, W, 3) or (H, W) uint8."""
+        self._network.template(bgr_of(image), box)
+
+    def propose(self, look: Look, at: Floats) -> Proposal:
+        """Look around a place.
+
+        Args:
+            look: of this frame.
+            at: (x, y), image px: middle of the search crop.
+        """
+        config = self._config
+        width, height = look.size.tolist()
+        scores, boxes = self._network.look(bgr_of(look.image), (at[0], at[1]), (width, height))
+        w, h = np.maximum(boxes[2:].astype(np.float64), config.smallest)
+        centres = np.stack([boxes[0] + boxes[2] / 2, boxes[1] + boxes[3] / 2], axis=-1)
+        size = _context(w, h) / _context(width, height)
+        aspect = (w / h) / (width / height)
+        change = np.maximum(size, 1 / size) * np.maximum(aspect, 1 / aspect)
+        steady = np.exp(-config.penalty * (change - 1))
+        ranked = steady * scores * (1 - config.window) + config.window * self._window
+        best = np.unravel_index(int(ranked.argmax()), ranked.shape)
+        x, y = centres[best].tolist()
+        box = Box.from_centre(x, y, float(w[best]), float(h[best]))
+        return Proposal(box, float(scores[best]), float(steady[best]), scores, centres)
+
+
+def _context(width: NDArray[np.float64] | float, height: NDArray[np.float64] | float) -> Floats:
+    """Side of a square with the area of a box and its surroundings."""
+    around = (width + height) / 2
+    return np.sqrt((width + around) * (height + around))

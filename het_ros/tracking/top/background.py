@@ -1,0 +1,173 @@
+# Copyright 2026 het_ros maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""A background model of keyframes: whether what was found stood there before the target came.
+
+A post that hides the target may look so much like it that shape and colours speak for it. But it
+stood at its place while the target was still on its way there: keyframes of the last seconds show
+it. So what was found is compared with its own place in them (moved with the camera, where the
+target was elsewhere), and with the target's place. What fits the first better is not the target.
+"""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import islice
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from het_ros.tracking.box import Box
+from het_ros.tracking.features.window import cut_window
+
+Floats = NDArray[np.float64]
+Image = NDArray[np.uint8]
+
+_TARGET_SIDE = 20.0  # px of a keyframe
+_LONGEST_SIDE = 256.0  # px of a keyframe at most
+_SMALLEST_PATCH = 4  # px: smaller ones look like anything
+_EVERY = 0.25  # s of view between two keyframes
+_KEPT = 12  # keyframes: those of the last 3 s of view
+_COMPARED = 5  # of them at most for a place, and for the target
+_NOT_NOW = 0.3  # s: what the place looked like less than this ago says nothing, ...
+_NOT_LATELY = 0.7  # ... nor what the target did less than this ago
+_ELSEWHERE = 0.75  # distance of two boxes over their mean side, in x or y: they hardly overlap
+_CAMERA_ERROR = 0.4  # target sizes: how far off a place may be in an older keyframe
+_TARGET_ERROR = 0.15  # target sizes, of the target's own place
+_ALIKE = 0.8  # correlation from which on two patches show the same
+_CLEARLY = 0.1  # by how much more than the target's it must be
+
+
+@dataclass(frozen=True)
+class Keyframe:
+    """The whole image at a moment when the target was in view.
+
+    Attributes:
+        pixels: (h, w) or (h, w, 3) uint8.
+        at: (x, y), image px: how far the scene had moved with the camera by then.
+        box: the target in it, image px.
+        time: s of view until then.
+    """
+
+    pixels: Image
+    at: Floats
+    box: Box
+    time: float
+
+
+Place = tuple[Keyframe, Floats]  # and the corner (x, y) of a place in it, image px
+
+
+class Background:
+    """Remembers what the scene looked like around the target.
+
+    Args:
+        shape: (H, W, ...) of the images.
+        side: sqrt(w h) of the target, px.
+    """
+
+    def __init__(self, shape: tuple[int, ...], side: float) -> None:
+        self._shape = shape[:2]
+        self._scale = min(1.0, _TARGET_SIDE / side, _LONGEST_SIDE / max(self._shape))
+        self._keyframes: deque[Keyframe] = deque(maxlen=_KEPT)
+        self._at: Floats = np.zeros(2)
+        self._time = 0.0
+
+    def move(self, shift: Floats) -> None:
+        """The camera moved the scene by ``shift`` (x, y), image px."""
+        self._at = self._at + shift
+
+    def remember(self, image: Image, box: Box, dt: float) -> None:
+        """The target is in view.
+
+        Args:
+            image: (H, W, 3) or (H, W) uint8.
+            box: the target in it.
+            dt: time since the last image, s.
+        """
+        if image.shape[:2] != self._shape:
+            self._shape = image.shape[:2]
+            self._keyframes.clear()
+        self._time += dt
+        if self._keyframes and self._time - self._keyframes[-1].time < _EVERY:
+            return
+        height, width = (max(_SMALLEST_PATCH, round(side * self._scale)) for side in self._shape)
+        pixels = cut_window(image, 0.0, 0.0, width, height, (self._scale, self._scale)).pixels
+        self._keyframes.append(Keyframe(pixels.copy(), self._at, box, self._time))
+
+    def shows(self, image: Image, box: Box) -> bool:
+        """Whether what is in ``box`` now stood there before, and does not look like the target.
+
+        Args:
+            image: (H, W, 3) or (H, W) uint8.
+            box: what was found in it, image px.
+        """
+        if image.shape[:2] != self._shape:
+            return False
+        patch = self._patch(image, box)
+        if min(patch.shape[:2]) < _SMALLEST_PATCH:
+            return False
+        size = np.array([box.w, box.h])
+        place = np.array([box.x, box.y]) - self._at
+        latest_first = tuple(reversed(self._keyframes))
+        before = [
+            (one, place + one.at)
+            for one in latest_first
+            if self._time - one.time > _NOT_NOW and not self._was_target(one, box)
+        ]
+        stood = self._best_of(before, patch, _CAMERA_ERROR * size)
+        if stood <= _ALIKE:
+            return False
+        target = [
+            (one, np.array(one.box.centre) - size / 2)
+            for one in latest_first
+            if self._time - one.time > _NOT_LATELY
+        ]
+        return stood > self._best_of(target, patch, _TARGET_ERROR * size) + _CLEARLY
+
+    def _best_of(self, places: Sequence[Place], patch: Image, error: Floats) -> float:
+        """Highest correlation of a patch with the first places that keyframes show, or -1."""
+        fits = (
+            best_fit(one.pixels, corner * self._scale, patch, error * self._scale)
+            for one, corner in places
+        )
+        shown = (fit for fit in fits if fit is not None)
+        return max(islice(shown, _COMPARED), default=-1.0)
+
+    def _patch(self, image: Image, box: Box) -> Image:
+        """What is in the box, as small as in a keyframe."""
+        width, height = round(box.w * self._scale), round(box.h * self._scale)
+        if min(width, height) < 1:
+            return image[:0]
+        scale = (self._scale, self._scale)
+        return cut_window(image, box.x, box.y, width, height, scale).pixels
+
+    def _was_target(self, one: Keyframe, box: Box) -> bool:
+        """Whether the target's box in a keyframe covered much of what is in ``box`` now."""
+        way = np.array(one.box.centre) - one.at - np.array(box.centre) + self._at
+        sides = np.array([one.box.w + box.w, one.box.h + box.h]) / 2
+        return bool((np.abs(way) <= _ELSEWHERE * sides).all())
+
+
+def best_fit(pixels: Image, corner: Floats, patch: Image, error: Floats) -> float | None:
+    """Correlation of a patch with an image around a place, or None where that lies outside.
+
+    Args:
+        pixels: (H, W) or (H, W, 3) uint8.
+        corner: (x, y) of the place, px.
+        patch: (h, w) or (h, w, 3) uint8.
+        error: (x, y), px: how far from there the best fit may be.
+    """
+    if pixels.ndim != patch.ndim:
+        return None
+    size = np.array(patch.shape[1::-1])
+    first = np.rint(corner).astype(int)
+    margin = np.ceil(error).astype(int)
+    left, top = np.maximum(first - margin, 0)
+    right, bottom = np.minimum(first + size + margin, pixels.shape[1::-1])
+    if right - left < size[0] or bottom - top < size[1]:
+        return None
+    around = pixels[top:bottom, left:right]
+    return float(cv2.matchTemplate(around, patch, cv2.TM_CCOEFF_NORMED).max())

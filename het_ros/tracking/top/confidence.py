@@ -1,0 +1,208 @@
+# Copyright 2026 het_ros maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""How far the place that was found can be trusted, and the state that follows.
+
+Features of the place go in; one calibrated probability that the box is right (overlap over 0.5)
+comes out, by a logistic regression that ``make fit`` writes. Everything else follows from it by
+three thresholds with hysteresis: what is learnt, when a target counts as hidden, when it is back.
+While the probability is low but nothing else is known to stand there, the box stays on the best
+place near the prediction and nothing is learnt: the target may only have changed. It coasts where
+something speaks for an occluder (background, another sensor) or nothing like it is near.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import astuple, dataclass
+
+from het_ros.tracking.estimate import State
+from het_ros.tracking.top.calibration import CALIBRATION
+
+LARGEST = 50.0  # a logit beyond which nothing changes but that exp() overflows; geometry
+
+
+@dataclass(frozen=True)
+class Features:
+    """What speaks for the place that was found.
+
+    Attributes:
+        score: mean score of the sub-patches there, about 1 for the target as learnt.
+        usual: exponential average of that over the frames that were learnt; low for a target
+            that is hard to tell.
+        relative: score over usual.
+        colour: likelihood of the colours there over its own average.
+        distractor: highest score elsewhere in the window over the one there.
+        moved: distance from the prediction, target sides.
+        spread: deviation of the sub-patches' scores, which agree on a target.
+    """
+
+    score: float
+    usual: float
+    relative: float
+    colour: float
+    distractor: float
+    moved: float
+    spread: float
+
+    def clipped(self) -> tuple[float, ...]:
+        """The features within the ranges in which more of them says more."""
+        limits = (1.2, math.inf, 1.3, 1.3, 1.5, 1.0, math.inf)
+        return tuple(
+            min(max(x, 0.0), most) for x, most in zip(astuple(self), limits, strict=True)
+        )
+
+
+def probability(features: Features) -> float:
+    """Probability that the box at that place is right (overlap over 0.5), 0..1."""
+    *weights, bias = CALIBRATION
+    logit = bias + sum(w * x for w, x in zip(weights, features.clipped(), strict=True))
+    return 1 / (1 + math.exp(-min(max(logit, -LARGEST), LARGEST)))
+
+
+@dataclass(frozen=True)
+class ConfidenceConfig:
+    """Thresholds of the decisions, on the probability but where it says otherwise.
+
+    Attributes:
+        hidden: below this a target that was there is hidden (chosen: hysteresis to ``back``).
+        back: from this on a hidden target is back (chosen: more likely right than not).
+        learn_from, learn_whole: between these the learning weight rises from 0 to 1 (chosen).
+        ambiguous: a distractor over this share of the score may be the target as well: nothing
+            is learnt, the score is at most ``back`` (chosen).
+        new: frames in which a target that was just given is learnt whatever is said (chosen: the
+            regression is learnt from too few frames to judge).
+        stay_within: distance from the prediction up to which the box stays on the best place,
+            target sides (chosen: a search window is hardly wider).
+        stay_above: relative score below which nothing like the target is there (measured on
+            sequences of development and others: a quarter).
+        average_rate: rate of the averages (chosen: 20 frames).
+    """
+
+    hidden: float = 0.15
+    back: float = 0.5
+    learn_from: float = 0.4
+    learn_whole: float = 0.7
+    ambiguous: float = 0.9
+    new: int = 10
+    stay_within: float = 1.5
+    stay_above: float = 0.25
+    average_rate: float = 0.05
+
+
+@dataclass(frozen=True)
+class Decision:
+    """What is done with a frame.
+
+    Attributes:
+        follow: whether the box goes to the place that was found; else it coasts.
+        returned: whether the target was not followed in the last frame.
+        weight: 0..1, how much of it is learnt.
+        score: 0..1, published.
+        state: TRACKING, COASTING or LOST.
+    """
+
+    follow: bool
+    returned: bool
+    weight: float
+    score: float
+    state: State
+
+
+class Confidence:
+    """Keeps averages and state of one target.
+
+    Args:
+        lost_after: s without being recognised until a target is LOST.
+
+    Attributes:
+        features: of the last frame, for the record; None before the first.
+        unseen: frames since the box was last on a place that was found.
+    """
+
+    def __init__(self, lost_after: float) -> None:
+        self._config = ConfidenceConfig()
+        self._lost_after = lost_after
+        self._score, self._colour = 1.0, 0.0
+        self._frames = 0
+        self._hidden_for = 0.0
+        self._state = State.TRACKING
+        self.features: Features | None = None
+        self.unseen = 0
+
+    def judge(
+        self,
+        score: float,
+        colour: float,
+        distractor: float,
+        moved: float,
+        spread: float,
+        occluded: bool,
+        dt: float,
+        network: tuple[float, float] | None = None,
+    ) -> Decision:
+        """Judge one frame.
+
+        Args:
+            score: mean score of the sub-patches at the place that was found.
+            colour: likelihood of the colours there, 0..1; 0 without colours.
+            distractor: highest score elsewhere.
+            moved: distance from the prediction, target sides.
+            spread: deviation of the sub-patches' scores there.
+            occluded: whether the background or another sensor says that something else is there.
+            dt: time since the last frame, s.
+        """
+        config = self._config
+        self._frames += 1
+        if not self._colour:
+            self._colour = colour
+        share = colour / self._colour if self._colour else 1.0
+        elsewhere = min(max(distractor, 0.0) / max(score, 1e-6), 10.0)
+        relative = score / self._score
+        found = Features(score, self._score, relative, share, elsewhere, moved, spread)
+        self.features = found
+        likely = probability(found)
+        self.network = network
+        if network:
+            likely = netprob(found, network)
+        if self._frames <= config.new:
+            likely = max(likely, config.back)
+        ambiguous = elsewhere > config.ambiguous
+        if ambiguous:
+            likely = min(likely, config.back)
+        least = config.hidden if self._state is State.TRACKING else config.back
+        returned = self.unseen > 0
+        if not occluded and likely >= least:
+            self.unseen, self._hidden_for, self._state = 0, 0.0, State.TRACKING
+            weight = 0.0 if ambiguous else self._weight(likely)
+            if weight:
+                self._average(score, colour)
+            return Decision(True, returned, weight, likely, self._state)
+        self._hidden_for += dt
+        lost = self._state is State.LOST or self._hidden_for > self._lost_after
+        self._state = State.LOST if lost else State.COASTING
+        near = moved < config.stay_within and relative > config.stay_above
+        follow = near and not occluded and not lost
+        self.unseen = 0 if follow else self.unseen + 1
+        published = 0.0 if lost else min(likely, config.back)
+        return Decision(follow, returned, 0.0, published, self._state)
+
+    def _weight(self, likely: float) -> float:
+        config = self._config
+        part = (likely - config.learn_from) / (config.learn_whole - config.learn_from)
+        return min(max(part, 0.0), 1.0)
+
+    def _average(self, score: float, colour: float) -> None:
+        rate = self._config.average_rate
+        self._score += rate * (score - self._score)
+        self._colour += rate * (colour - self._colour)
+
+
+NET = None
+
+
+def netprob(f, n):
+    if NET is None:
+        return max(probability(f), 0.9 * n[0] * (1 if n[1] < 0.5 else 0.3))
+    x = [*f.clipped(), n[0], n[1], 1.0]
+    z = sum(a * b for a, b in zip(NET, x))
+    return 1 / (1 + math.exp(-min(max(z, -50), 50)))
