@@ -7,6 +7,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from het_ros.tracking.features.buffers import Buffers
 from het_ros.tracking.features.compressive import FeatureMaps
 from het_ros.tracking.paper.detection import nearest_places
 from het_ros.tracking.paper.weak_classifiers import WeakClassifiers, rows_in_fours
@@ -16,7 +17,9 @@ Floats = NDArray[np.float64]
 _LARGEST_LOG_RATIO = 50.0  # beyond it a probability is 0 or 1 to float64's precision; geometry
 
 
-def score_maps(classifiers: WeakClassifiers, features: FeatureMaps) -> FeatureMaps:
+def score_maps(
+    classifiers: WeakClassifiers, features: FeatureMaps, scratch: Buffers
+) -> FeatureMaps:
     """F(l) = sum of f(l_i), eq. (6) "strongClassifier", of every sub-patch at every place.
 
     f is quadratic in the feature, so all sub-patches at all places are one matrix product,
@@ -25,13 +28,15 @@ def score_maps(classifiers: WeakClassifiers, features: FeatureMaps) -> FeatureMa
     Args:
         classifiers: of Q sub-patches.
         features: (m, rows, columns), normalised.
+        scratch: where the features' squares are put.
 
     Returns:
         (Q, rows, columns), of the features' dtype.
     """
     quadratic, linear, constant = classifiers.coefficients()
     flat = features.reshape(len(features), -1)
-    scores = rows_in_fours(quadratic, flat.dtype) @ np.multiply(flat, flat)
+    squares = np.multiply(flat, flat, out=scratch.empty(flat.shape, flat.dtype))
+    scores = rows_in_fours(quadratic, flat.dtype) @ squares
     scores += rows_in_fours(linear, flat.dtype) @ flat
     scores = scores[: len(constant)]
     scores += constant.sum(axis=1, keepdims=True).astype(flat.dtype)

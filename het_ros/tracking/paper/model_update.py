@@ -7,6 +7,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from het_ros.tracking.features.buffers import Buffers
 from het_ros.tracking.features.compressive import FeatureMaps
 from het_ros.tracking.paper.detection import squared_distances
 from het_ros.tracking.paper.weak_classifiers import Gaussians, WeakClassifiers, fit_gaussians
@@ -34,7 +35,11 @@ def to_be_updated(scores: Floats) -> Choice:
 
 
 def class_gaussians(
-    features: FeatureMaps, corners: Floats, positive_radius: float, negative_radius: float
+    features: FeatureMaps,
+    corners: Floats,
+    positive_radius: float,
+    negative_radius: float,
+    scratch: Buffers,
 ) -> tuple[Gaussians, Gaussians]:
     """This frame's positive and negative samples of each sub-patch, as Gaussians.
 
@@ -46,6 +51,7 @@ def class_gaussians(
         corners: p (Q, 2) of the re-extracted sub-patches, px.
         positive_radius: px.
         negative_radius: px.
+        scratch: where the samples are put.
     """
     rows, columns = features.shape[1:]
     low = np.floor(corners.min(axis=0) - positive_radius)
@@ -60,7 +66,8 @@ def class_gaussians(
     distances = 4 * squared_distances(corners / 2, coarse.shape[1:])
     farthest = distances.max(axis=(1, 2), keepdims=True)
     negative = distances >= np.minimum(negative_radius**2, farthest)
-    return fit_gaussians(near, positive), fit_gaussians(coarse, negative)
+    powers = scratch.empty((2 * max(near.size, coarse.size),), features.dtype)
+    return fit_gaussians(near, positive, powers), fit_gaussians(coarse, negative, powers)
 
 
 def blended(old: Gaussians, new: Gaussians, learning_rate: float, chosen: Choice) -> Gaussians:

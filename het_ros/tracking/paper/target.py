@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from het_ros.tracking.box import Box
 from het_ros.tracking.estimate import Estimate, Patch, State
+from het_ros.tracking.features.buffers import Buffers
 from het_ros.tracking.features.frame import Frame
 from het_ros.tracking.features.window import Pixels, Window
 from het_ros.tracking.paper.appearance import LocalAppearance, draw_sub_patches
@@ -26,7 +27,7 @@ from het_ros.tracking.paper.model_update import (
     to_be_updated,
     updated,
 )
-from het_ros.tracking.paper.weak_classifiers import WeakClassifiers
+from het_ros.tracking.paper.weak_classifiers import Gaussians, WeakClassifiers
 
 Floats = NDArray[np.float64]
 
@@ -75,6 +76,7 @@ class Target:
     def __init__(self, config: PaperConfig, image: Pixels, box: Box) -> None:
         self._config = config
         self._size = np.array([box.w, box.h])
+        self._squares, self._samples = Buffers(), Buffers()
         rng = np.random.default_rng(config.seed)
         sides = box.w, box.h
         self._patches = draw_sub_patches(sides, config.sub_patches, config.sub_patch_fraction, rng)
@@ -90,10 +92,8 @@ class Target:
         )
         frame = self._appearance.frame(image, self._kalman.centre)
         corners = self._patches.corners(self._corner_in(frame.window, self._kalman.centre))
-        samples = class_gaussians(
-            frame.features, corners, config.positive_radius, config.negative_radius
-        )
-        self._classifiers = WeakClassifiers(*samples, config.sigma_floor)
+        positive, negative = self._class_gaussians(frame, corners)
+        self._classifiers = WeakClassifiers(positive, negative, config.sigma_floor)
 
     def follow(self, image: Pixels, dt: float) -> Estimate:
         """One frame, by the six steps of the paper's Figure 1.
@@ -103,7 +103,7 @@ class Target:
             dt: time since the last frame, s.
         """
         frame = self._appearance.frame(image, self._kalman.predict(dt))
-        scores = score_maps(self._classifiers, frame.features)
+        scores = score_maps(self._classifiers, frame.features, self._squares)
 
         found = self._detect_sub_patches(frame, scores)  # 1
         measured = self._combine_base_ensembles(frame, found)  # 2
@@ -141,13 +141,14 @@ class Target:
 
     def _update_weak_classifiers(self, frame: Frame, extracted: ReExtraction) -> None:
         """Step 6, bottom layer: the Gaussians of the chosen sub-patches, eq. (18)."""
-        config = self._config
-        positive, negative = class_gaussians(
-            frame.features, extracted.corners, config.positive_radius, config.negative_radius
-        )
-        self._classifiers = updated(
-            self._classifiers, positive, negative, config.learning_rate, extracted.chosen
-        )
+        positive, negative = self._class_gaussians(frame, extracted.corners)
+        rate = self._config.learning_rate
+        self._classifiers = updated(self._classifiers, positive, negative, rate, extracted.chosen)
+
+    def _class_gaussians(self, frame: Frame, corners: Floats) -> tuple[Gaussians, Gaussians]:
+        """The frame's positive and negative samples of the sub-patches at ``corners`` (Q, 2)."""
+        near, far = self._config.positive_radius, self._config.negative_radius
+        return class_gaussians(frame.features, corners, near, far, self._samples)
 
     @property
     def box(self) -> Box:

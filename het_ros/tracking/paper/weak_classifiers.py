@@ -65,14 +65,17 @@ class WeakClassifiers:
         return np.asarray(quadratic * features**2 + linear * features + constant)
 
 
-def fit_gaussians(features: FeatureMaps, samples: NDArray[np.bool_]) -> Gaussians:
+def fit_gaussians(
+    features: FeatureMaps, samples: NDArray[np.bool_], scratch: FeatureMaps
+) -> Gaussians:
     """Mean and variance of each sub-patch's samples, by one matrix product.
 
     Args:
         features: (m, rows, columns), normalised.
         samples: (Q, rows, columns), which places are samples of which sub-patch; one at least.
+        scratch: of the features' dtype, for twice as many numbers or more; it is written.
     """
-    powers = np.empty((2, *features.shape), features.dtype)
+    powers = scratch[: 2 * features.size].reshape(2, *features.shape)
     powers[0] = features
     np.multiply(powers[0], powers[0], out=powers[1])
     chosen = samples.reshape(len(samples), -1)
