@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from het_ros.tracking.box import Box
 from het_ros.tracking.estimate import Estimate, Patch, State
 from het_ros.tracking.features.buffers import Buffers
+from het_ros.tracking.features.compressive import FeatureMaps
 from het_ros.tracking.features.frame import Frame
 from het_ros.tracking.features.window import Pixels, Window
 from het_ros.tracking.paper.appearance import LocalAppearance, draw_sub_patches
@@ -118,7 +119,7 @@ class Target:
         patches = self._patches.in_image(frame.window, found.corners, measured.weights)
         return self.estimate(score, State.TRACKING, patches)
 
-    def _detect_sub_patches(self, frame: Frame, scores: Floats) -> Detections:
+    def _detect_sub_patches(self, frame: Frame, scores: FeatureMaps) -> Detections:
         """Step 1, bottom layer: where the base ensembles find the sub-patches, eq. (7).
 
         Args:
@@ -134,7 +135,7 @@ class Target:
         candidates = hypotheses(found.corners, self._patches.offsets)
         return Measurement(self._centre_in(frame.window, combine(candidates, omega)), omega)
 
-    def _re_extract_sub_patches(self, frame: Frame, scores: Floats) -> ReExtraction:
+    def _re_extract_sub_patches(self, frame: Frame, scores: FeatureMaps) -> ReExtraction:
         """Step 5, middle layer: the sub-patches anew at the estimate, and eq. (17) of them."""
         corners = self._patches.corners(self._corner_in(frame.window, self._kalman.centre))
         return ReExtraction(corners, to_be_updated(scores_at(scores, corners)))

@@ -76,5 +76,6 @@ def test_agreeing_sub_patches_are_trusted_more():
 )
 def test_what_others_import_does_not_load_the_filters_library(module):
     """It brings SciPy's statistics and matplotlib: 70 MB that only the paper's tracker pays."""
-    code = f"import sys, {module}; assert not {{'filterpy', 'scipy', 'matplotlib'}} & set(sys.modules)"
+    heavy = {"filterpy", "scipy", "matplotlib"}
+    code = f"import sys, {module}; assert not {heavy} & set(sys.modules)"
     subprocess.run([sys.executable, "-c", code], check=True)
