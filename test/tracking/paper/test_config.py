@@ -32,7 +32,7 @@ def test_every_parameter_says_where_it_comes_from():
     for declared in parameters_of(PaperConfig):
         if declared.name != "seed":
             assert (
-                "(paper)" in declared.doc or "(chosen" in declared.doc or "lambda" in declared.doc
+                "(paper)" in declared.doc or "(chosen" in declared.doc
             )
 
 
