@@ -18,6 +18,8 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from het_ros.tracking.features.buffers import Buffers
+
 Integrals = Sequence[NDArray[Any]]
 FeatureMaps = NDArray[np.floating[Any]]
 _Operation = tuple[Callable[..., Any], FeatureMaps, FeatureMaps, FeatureMaps]
@@ -147,19 +149,22 @@ class RectangleSums:
         self._total, self._wanted = sums.reshape(-1)[: self._places], sums[:, : stride - width]
         self._band_scratch = np.empty(self._places + width, sums.dtype)
         self._scale = scale
+        self._buffers = Buffers()
         # An array of one number, not a number: NumPy 1 would subtract in the sums' dtype.
         centres = centre.astype(sums.dtype)[:, None]
         self._program = self._compile(matrix.rows, centres)
 
     def __call__(self, integrals: Integrals) -> FeatureMaps:
-        """The features of a window, (m, H - h + 1, W - w + 1), in an array of their own.
+        """The features of a window, (m, H - h + 1, W - w + 1).
+
+        No later call writes them while somebody holds them or a view of them.
 
         Args:
             integrals: C integral images of the shape and dtype said at first.
         """
         for plane, integral in zip(self._stack, integrals, strict=True):
             plane[...] = integral
-        maps = np.empty((len(self._scale), *self._wanted.shape), self._scale.dtype)
+        maps = self._buffers.empty((len(self._scale), *self._wanted.shape), self._scale.dtype)
         for feature, operations in self._program:
             for operation, one, other, out in operations:
                 operation(one, other, out)
@@ -252,8 +257,7 @@ class CompressiveFeatures:
         """(m, rows, columns) of the normalised features at every place of a window.
 
         The first call fixes, for each feature, the mean and the deviation that this and all
-        further maps are centred and scaled with. Maps are the caller's: no later call writes
-        them.
+        further maps are centred and scaled with. No later call writes maps that somebody holds.
 
         Args:
             integrals: C integral images (H + 1, W + 1) of one dtype.

@@ -22,6 +22,17 @@ _AVERAGE_FROM = 1.5
 _SAMPLES = 3
 
 
+def check_image(image: Pixels) -> None:
+    """Raise ValueError unless the image is (H, W, 3) or (H, W) uint8 with at least one px."""
+    if not isinstance(image, np.ndarray) or image.dtype != np.uint8:
+        kind = getattr(image, "dtype", type(image).__name__)
+        raise ValueError(f"an image must be a uint8 array, not {kind}: convert it first")
+    if image.size == 0 or image.ndim not in (2, 3) or (image.ndim == 3 and image.shape[2] != 3):
+        raise ValueError(
+            f"an image must be of shape (H, W, 3) in BGR order or (H, W), not {image.shape}"
+        )
+
+
 @dataclass(frozen=True)
 class Window:
     """An upright rectangle cut out of an image, at a resolution of its own.
