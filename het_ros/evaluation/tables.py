@@ -26,6 +26,11 @@ class Row:
     cells: tuple[Cell, ...]
     ours: bool = False
 
+    @classmethod
+    def of(cls, *texts: str) -> Row:
+        """A row of plain cells."""
+        return cls(tuple(Cell(text) for text in texts))
+
 
 @dataclass(frozen=True)
 class Table:

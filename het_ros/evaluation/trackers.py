@@ -58,7 +58,12 @@ class TrackerSpec:
     @property
     def folder(self) -> str:
         """The name as a folder's name."""
-        return re.sub(r"[^\w.=+-]+", "_", self.name)
+        return folder_name(self.name)
+
+
+def folder_name(tracker: str) -> str:
+    """A tracker's name as a folder's name."""
+    return re.sub(r"[^\w.=+-]+", "_", tracker)
 
 
 class Het:
