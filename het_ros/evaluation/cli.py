@@ -11,7 +11,15 @@ import sys
 from collections.abc import Iterator
 from pathlib import Path
 
-from het_ros.evaluation import opencv_peers, pages, published, raw_boxes, report, tables
+from het_ros.evaluation import (
+    evidence_tables,
+    opencv_peers,
+    pages,
+    published,
+    raw_boxes,
+    report,
+    tables,
+)
 from het_ros.evaluation.cache import Cache
 from het_ros.evaluation.compare import compare
 from het_ros.evaluation.drawing import colours
@@ -168,7 +176,8 @@ def _report(
     if options.published:
         excluded = options.published_except.split(",")
         comparison = published.compare(options.published, results, excluded)
-    drawn, listed = plots(results, palette), tables.tables(results, comparison)
+    drawn = plots(results, palette)
+    listed = tables.tables(results, comparison) + evidence_tables.tables(results)
     for page in options.into:
         pages.update(page, results, listed)
         yield page

@@ -5,7 +5,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -16,6 +16,16 @@ from het_ros.evaluation.tables import Row, Table
 from het_ros.evaluation.trackers import folder_name
 
 FIGURES = {"auc": "AUC", "p20": "P20", "norm_precision": "norm. precision"}
+OTHER = {
+    "share of frames confident and off": ("honesty", "off"),
+    "recall of visible": ("honesty", "recall"),
+    "longest false LOST, frames": ("honesty", "longest_false_lost"),
+    "AUC without LOST": ("honesty", "published_auc"),
+    "error of velocity, sides/s": ("velocity", "published"),
+    "its change from frame to frame, sides/s": ("velocity", "change"),
+    "its lag, frames": ("velocity", "lag"),
+    "error 0.2 s ahead, sides": ("velocity", "ahead", "0.2", "velocity"),
+}
 MOVED = 10  # sequences that are listed each way
 
 
@@ -44,6 +54,18 @@ class Side:
         """All figures of the tracker."""
         figures: Mapping[str, Any] = self.results["trackers"][self.tracker]
         return figures
+
+    def more(self, kind: str, keys: Iterable[str]) -> dict[str, float]:
+        """A figure of honesty or velocity by sequence, where the tracker gives it."""
+        found = self.figures.get(kind, {})
+        by_sequence = found.get("sequences", {}) if kind == "honesty" else found
+        values = {}
+        for sequence, value in by_sequence.items():
+            for key in keys:
+                value = value[key]
+            if value is not None:
+                values[sequence] = float(value)
+        return values
 
     @property
     def tracker_folder(self) -> str:
@@ -147,7 +169,8 @@ def compare(a: Side, b: Side) -> Comparison:
 
 def tables(found: Comparison) -> list[Table]:
     """Differences over all and by group, and the sequences that moved most."""
-    return [_by_group(found), _moved(found)]
+    listed = [_by_group(found), _other(found), _moved(found)]
+    return [table for table in listed if table.rows]
 
 
 def _by_group(found: Comparison) -> Table:
@@ -171,6 +194,26 @@ def _by_group(found: Comparison) -> Table:
         "B - A: mean over sequences of the paired difference, seeds averaged first, ± its "
         "standard error over sequences; / s.e.: the same in standard errors. What has two or more "
         "over all is a gain.",
+    )
+
+
+def _other(found: Comparison) -> Table:
+    """Honesty, velocity and prediction, where both sides have them."""
+    rows = []
+    for label, (kind, *keys) in OTHER.items():
+        sides = [side.more(kind, keys) for side in (found.a, found.b)]
+        shared = [s for s in found.sequences if all(s in side for side in sides)]
+        if not shared:
+            continue
+        apart = groups.mean(sides[1][s] - sides[0][s] for s in shared)
+        before, after = (groups.mean(side[s] for s in shared).value for side in sides)
+        figures = [f"{before:.3f}", f"{after:.3f}", f"{apart:+.4f}", in_errors(apart)]
+        rows.append(Row.of(label, str(len(shared)), *figures))
+    return Table(
+        "Honesty and velocity",
+        ("figure", "n", "A", "B", "B - A", "/ s.e."),
+        tuple(rows),
+        "Less is better but of recall and AUC. As defined in the tables of the same names.",
     )
 
 

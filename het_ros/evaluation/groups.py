@@ -6,9 +6,11 @@ from __future__ import annotations
 
 import csv
 from collections.abc import Iterable, Mapping
+from collections.abc import Sequence as Listing
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -80,3 +82,34 @@ def grouped(sequences: Iterable[str]) -> dict[str, list[str]]:
 def means(values: Mapping[str, float]) -> dict[str, Mean]:
     """Mean over all sequences and over each group, of one value a sequence."""
     return {g: mean(values[s] for s in members) for g, members in grouped(values).items()}
+
+
+Figures = dict[str, Any]
+
+
+def averaged(runs: Listing[Figures]) -> Figures:
+    """Figure by figure, also in nested ones, the mean over runs of one sequence.
+
+    A figure that is None in a run does not count there; None where no run has it.
+    """
+    found: Figures = {}
+    for name, first in runs[0].items():
+        values = [run[name] for run in runs]
+        if isinstance(first, dict):
+            found[name] = averaged(values)
+        else:
+            known = [value for value in values if value is not None]
+            found[name] = float(np.mean(known)) if known else None
+    return found
+
+
+def over(figures: Mapping[str, Figures], *keys: str) -> Mean | None:
+    """Mean over the sequences of which a figure, found by its keys, is known."""
+    values = []
+    for found in figures.values():
+        value: Any = found
+        for key in keys:
+            value = value[key]
+        if value is not None:
+            values.append(value)
+    return mean(values) if values else None

@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 
 import het_ros.tracking
 from het_ros.evaluation import opencv_peers
-from het_ros.evaluation.answers import Answer
+from het_ros.evaluation.answers import HORIZONS, Answer
 from het_ros.tracking.box import Box
 from het_ros.tracking.config import TrackerConfig
 from het_ros.tracking.parameter import Parameter, parameters_of
@@ -80,7 +80,21 @@ class Het:
     def update(self, image: NDArray[np.uint8], dt: float) -> Answer:
         """Follow into the next image."""
         e = self._tracker.update(image, dt)
-        return Answer(e.box.as_tuple(), e.state.value, e.score, e.velocity, e.covariance)
+        return Answer(
+            e.box.as_tuple(), e.state.value, e.score, e.velocity, e.covariance, predicted(e)
+        )
+
+
+def predicted(estimate: Any) -> NDArray[np.float64] | None:
+    """(3, 2) centres px, ``HORIZONS`` ahead, of an estimate that has ``predict(dt)``, or None.
+
+    ``predict`` gives a Box, or an estimate that has one.
+    """
+    predict = getattr(estimate, "predict", None)
+    if predict is None:
+        return None
+    found = (predict(seconds) for seconds in HORIZONS)
+    return np.array([getattr(one, "box", one).centre for one in found])
 
 
 class Identity:

@@ -90,6 +90,26 @@ def test_the_whole_command(folders, tmp_path, capsys):
         assert (np.abs(picture - colour[::-1]).max(axis=2) < 60).any(), "both boxes are there"
 
 
+def test_honesty_and_velocity_are_paired_where_both_sides_have_them(folders, capsys):
+    for folder, off, error in zip(folders, (0.1, 0.3), (2.0, None), strict=True):
+        file = folder / "results.json"
+        content = json.loads(file.read_text())
+        honest = {"off": off, "recall": 1, "longest_false_lost": 0, "published_auc": None}
+        moves = {"published": error, "change": error, "lag": 1.0}
+        moves["ahead"] = {"0.2": {"velocity": None}}
+        content["trackers"]["het"] |= {
+            "honesty": {"sequences": dict.fromkeys(NAMES[:2], honest)},
+            "velocity": {"Woman": moves},
+        }
+        file.write_text(json.dumps(content))
+    assert cli.main(["--compare", *map(str, folders)]) == 0
+    shown = capsys.readouterr().out
+    said = "| share of frames confident and off | 2 | 0.100 | 0.300 | +0.2000 ± 0.0000 |"
+    assert said in shown
+    assert "| its lag, frames | 1 | 1.000 | 1.000 | +0.0000 | - |" in shown
+    assert "error of velocity" not in shown, "only one side knows it"
+
+
 def test_a_tracker_of_a_folder_is_named_after_a_colon(folders):
     a, _ = folders
     assert comparison.side(f"{a}:het") == comparison.side(str(a))
