@@ -8,7 +8,7 @@ from typing import Any
 
 from het_ros.evaluation import groups, velocity, velocity_metrics
 from het_ros.evaluation.groups import ALL, FIRST, LATER, Mean
-from het_ros.evaluation.state_metrics import ON_TARGET
+from het_ros.evaluation.metrics import ON_TARGET
 from het_ros.evaluation.tables import Cell, Results, Row, Table, ranked
 
 NOTE = "Means over sequences, seeds averaged first, ± the standard error over sequences."

@@ -23,6 +23,7 @@ from het_ros.evaluation import opencv_peers
 from het_ros.evaluation.answers import HORIZONS, Answer
 from het_ros.tracking.box import Box
 from het_ros.tracking.config import TrackerConfig
+from het_ros.tracking.estimate import Estimate
 from het_ros.tracking.parameter import Parameter, parameters_of
 from het_ros.tracking.tracker import HierarchicalEnsembleTracker
 
@@ -79,10 +80,12 @@ class Het:
 
     def update(self, image: NDArray[np.uint8], dt: float) -> Answer:
         """Follow into the next image."""
-        e = self._tracker.update(image, dt)
-        return Answer(
-            e.box.as_tuple(), e.state.value, e.score, e.velocity, e.covariance, predicted(e)
-        )
+        return answer_of(self._tracker.update(image, dt))
+
+
+def answer_of(e: Estimate) -> Answer:
+    """What an estimate says, with its own prediction where it has one."""
+    return Answer(e.box.as_tuple(), e.state.value, e.score, e.velocity, e.covariance, predicted(e))
 
 
 def predicted(estimate: Any) -> NDArray[np.float64] | None:

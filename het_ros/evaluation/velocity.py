@@ -5,16 +5,17 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from het_ros.evaluation import groups, velocity_metrics
 from het_ros.evaluation.answers import HORIZONS, Track
-from het_ros.evaluation.metrics import overlaps
-from het_ros.evaluation.runs import Run
-from het_ros.evaluation.state_metrics import ON_TARGET
+from het_ros.evaluation.metrics import ON_TARGET, overlaps
 from het_ros.evaluation.velocity_metrics import Flags, Floats
+
+if TYPE_CHECKING:
+    from het_ros.evaluation.runs import Run  # which needs what runs trackers: scenes do not
 
 LEAST_FRAMES = 20  # on the target, of a run that is judged
 MOVING = 0.5  # sides/s: true speed, root mean square, of a target that moves
