@@ -1,5 +1,8 @@
 # Copyright 2026 het_ros maintainers
 # SPDX-License-Identifier: Apache-2.0
+import re
+from pathlib import Path
+
 import numpy as np
 import pytest
 
@@ -110,3 +113,22 @@ def test_tables_without_rows_are_left_out(results):
     del results["trackers"]["het"]["honesty"], results["trackers"]["het"]["velocity"]
     titles = [table.title for table in evidence_tables.tables(results)]
     assert titles == ["In short", "AUC by group", "Precision at 20 px by group"]
+
+
+OF_EVERY_RUN = {
+    *("Trackers", "AUC by sequence", "Precision at 20 px by sequence", "AUC by attribute"),
+    *("Did it know?", "Published figures beside ours"),
+}
+
+
+@pytest.mark.parametrize("page", ["README.md", "docs/RESULTS.md"])
+def test_the_pages_ask_for_tables_that_there_are(results, page):
+    text = (Path(__file__).parents[2] / page).read_text()
+    asked = {
+        title.strip()
+        for place in re.findall("<!-- evaluate: (.*?) -->", text)
+        for title in place.split(",")
+    }
+    given = {table.title for table in evidence_tables.tables(results)}
+    assert asked
+    assert asked <= given | OF_EVERY_RUN
