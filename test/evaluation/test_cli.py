@@ -113,7 +113,7 @@ def test_every_protocol_runs_and_reports(folder, protocol, variants):
     assert 0 < tracker["auc"] < 1
     if protocol == "realtime":
         assert set(tracker["realtime"]) == {"20", "30", "60"}
-        assert tracker["realtime"]["60"]["frames_seen"] == 1
+        assert 0 < tracker["realtime"]["60"]["frames_seen"] <= 1
     if protocol == "restart":
         assert tracker["failures"] == 1, "14 px wide and 2 px a frame: outside after 7 frames"
         assert tracker["accuracy"] is None, "it never lasts longer than the burn-in"
