@@ -26,6 +26,7 @@ OTHER = {
     "its lag, frames": ("velocity", "lag"),
     "error 0.2 s ahead, sides": ("velocity", "ahead", "0.2", "velocity"),
 }
+PRINTED = 5e-5  # a difference below is printed as zero
 MOVED = 10  # sequences that are listed each way
 
 
@@ -219,7 +220,10 @@ def _other(found: Comparison) -> Table:
 
 def in_errors(difference: Mean) -> str:
     """A difference in its standard errors; a dash where that has no meaning."""
-    return f"{difference.value / difference.error:+.1f}" if difference.error else "-"
+    error = difference.error
+    if not error or max(abs(difference.value), error) < PRINTED:  # nothing but last bits
+        return "-"
+    return f"{difference.value / error:+.1f}"
 
 
 def _moved(found: Comparison) -> Table:

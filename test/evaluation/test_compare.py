@@ -9,6 +9,7 @@ import pytest
 from het_ros.evaluation import cli, comparison, raw_boxes
 from het_ros.evaluation.answers import Track
 from het_ros.evaluation.comparison_pictures import PALETTE
+from het_ros.evaluation.groups import Mean
 from het_ros.evaluation.metrics import score
 from het_ros.evaluation.runs import Run
 
@@ -122,6 +123,20 @@ def test_the_same_twice_is_no_difference(folders, capsys):
     assert "+0.0000 ± 0.0000 | - |" in capsys.readouterr().out
     assert (a / "compare" / "compare.md").is_file()
     assert not list((a / "compare").glob("worst/*.jpg"))
+
+
+@pytest.mark.parametrize(
+    ("value", "error", "text"),
+    [
+        (0.04, 0.02, "+2.0"),
+        (-0.03, 0.02, "-1.5"),
+        (0.04, None, "-"),
+        (0, 0, "-"),
+        (1e-9, 1e-9, "-"),
+    ],
+)
+def test_a_difference_in_its_standard_errors(value, error, text):
+    assert comparison.in_errors(Mean(value, error, 3)) == text
 
 
 def test_sequences_that_only_one_side_has_are_named_and_left_out(folders, data, tmp_path, capsys):
