@@ -22,8 +22,8 @@ WORKSPACE := $(ROS); source install/setup.bash
 PEERS_SPACE := $(CLEAN); source $(PEERS)/bin/activate; export AMENT_PREFIX_PATH="$$VIRTUAL_ENV"; \
 	source install/setup.bash
 
-.PHONY: help setup build run test test-oldest fuzz faults soak evaluate scenes bench docs format \
-	clean
+.PHONY: help setup build run test test-oldest fuzz faults soak evaluate compare scenes bench docs \
+	format clean
 
 help: ## What there is to make
 	@grep -E '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:[^#]*## /\t/' | expand -t 14
@@ -31,6 +31,7 @@ help: ## What there is to make
 	@echo 'make run [VIDEO=file INIT=x,y,w,h | SEQUENCE=folder] [OUT=out/run]'
 	@echo 'make evaluate DATA=folder [OUT=out/evaluate] [TRACKERS=het,csrt] [SEEDS=3]'
 	@echo '     [PROTOCOL=ope|tre|sre|passes|realtime|restart] [SEQUENCES=a,b] [SCHEDULER=tcp://host:8786]'
+	@echo 'make compare A=folder B=folder[:tracker] [OUT=folder] [DATA=folder]'
 	@echo 'make scenes [OUT=out/scenes] [SCENES="--seeds 20 --stories lookalike_crosses"]'
 	@echo 'make bench [OUT=out/bench] [DATA=folder]'
 	@echo 'make fuzz [MINUTES=10] [OUT=out/fuzz]'
@@ -128,6 +129,10 @@ evaluate: OUT ?= out/evaluate
 evaluate: $(BUILT) $(PEERS)/.ready ## Score this tracker and OpenCV's on DATA=folder
 	@test -n '$(DATA)' || { echo 'make evaluate DATA=folder: name a folder of sequences (OTB or VOT layout)'; exit 2; }
 	@$(PEERS_SPACE); python -m het_ros.evaluation.cli --data '$(DATA)' --out '$(OUT)' $(PEER_OPTIONS) $(EVALUATE)
+
+compare: $(BUILT) ## Judge a change: paired differences of the results folders A and B
+	@test -n '$(A)' -a -n '$(B)' || { echo 'make compare A=out/before B=out/after: name two folders that make evaluate wrote'; exit 2; }
+	@$(WORKSPACE); python -m het_ros.evaluation.cli --compare '$(A)' '$(B)' $(if $(OUT),--out '$(OUT)') $(if $(DATA),--data '$(DATA)')
 
 scenes: OUT ?= out/scenes
 scenes: $(BUILT) ## Is it honest? Rendered stories with exact truth: hidden, gone, look-alikes

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 NAN2 = (float("nan"), float("nan"))
+HORIZONS = (0.1, 0.2, 0.5)  # s ahead, for which a tracker's own prediction is recorded
 
 
 @dataclass(frozen=True)
@@ -22,6 +23,7 @@ class Answer:
         score: 0..1, or NaN.
         velocity: of the centre, px/s.
         covariance: (4, 4) of [cx, cy, vx, vy], or None.
+        predictions: (3, 2) centres px, ``HORIZONS`` ahead, or None.
     """
 
     box: tuple[float, float, float, float] | None
@@ -29,6 +31,7 @@ class Answer:
     score: float = float("nan")
     velocity: tuple[float, float] = NAN2
     covariance: NDArray[np.float64] | None = None
+    predictions: NDArray[np.float64] | None = None
 
 
 @dataclass
@@ -41,6 +44,8 @@ class Track:
         scores: (n,) float64, NaN where the tracker gave none.
         velocities: (n, 2) float64, px/s.
         covariances: (n, 2, 2) float64 of the centre, px^2.
+        velocity_covariances: (n, 2, 2) float64 of the velocity, px^2/s^2.
+        predictions: (n, 3, 2) float64 centres, px, ``HORIZONS`` ahead.
         seconds: (n,) float64, time of ``update`` (``init`` in row 0), s; NaN where it was not
             called.
         starts: frames at which the tracker was started; more than one after restarts.
@@ -53,6 +58,8 @@ class Track:
     scores: NDArray[np.float64]
     velocities: NDArray[np.float64]
     covariances: NDArray[np.float64]
+    velocity_covariances: NDArray[np.float64]
+    predictions: NDArray[np.float64]
     seconds: NDArray[np.float64]
     starts: list[int] = field(default_factory=lambda: [0])
     failures: list[int] = field(default_factory=list)
@@ -67,6 +74,8 @@ class Track:
             scores=np.full(n, np.nan),
             velocities=np.full((n, 2), np.nan),
             covariances=np.full((n, 2, 2), np.nan),
+            velocity_covariances=np.full((n, 2, 2), np.nan),
+            predictions=np.full((n, len(HORIZONS), 2), np.nan),
             seconds=np.full(n, np.nan),
             error=error,
         )
@@ -78,9 +87,16 @@ class Track:
         self.scores[row] = answer.score
         self.velocities[row] = answer.velocity
         if answer.covariance is not None:
-            self.covariances[row] = np.asarray(answer.covariance)[:2, :2]
+            whole = np.asarray(answer.covariance)
+            self.covariances[row] = whole[:2, :2]
+            self.velocity_covariances[row] = whole[2:4, 2:4]
+        if answer.predictions is not None:
+            self.predictions[row] = answer.predictions
 
     def repeat(self, row: int) -> None:
         """Record that frame ``row`` got the answer of the frame before."""
-        for rows in (self.boxes, self.states, self.scores, self.velocities, self.covariances):
+        for rows in (
+            *(self.boxes, self.states, self.scores, self.velocities),
+            *(self.covariances, self.velocity_covariances, self.predictions),
+        ):
             rows[row] = rows[row - 1]

@@ -11,8 +11,17 @@ import sys
 from collections.abc import Iterator
 from pathlib import Path
 
-from het_ros.evaluation import opencv_peers, pages, published, raw_boxes, report, tables
+from het_ros.evaluation import (
+    evidence_tables,
+    opencv_peers,
+    pages,
+    published,
+    raw_boxes,
+    report,
+    tables,
+)
 from het_ros.evaluation.cache import Cache
+from het_ros.evaluation.compare import compare
 from het_ros.evaluation.drawing import colours
 from het_ros.evaluation.jobs import DIED, SourceChangedError
 from het_ros.evaluation.plots import plots
@@ -30,6 +39,8 @@ examples:
   evaluate --data ../shared/sequences --out out/dev --seeds 3
   evaluate --data ../shared/sequences --out out/try --sequences Crossing,Woman --timing 0 \\
       --trackers het,het:sub_patches=5,small@het:small.yaml,csrt
+  evaluate --compare out/before out/after
+  evaluate --compare out/try:het out/try:small --out out/difference
 """
 
 
@@ -37,6 +48,10 @@ def main(arguments: list[str] | None = None) -> int:
     """Run a comparison; 0 when it came through, 2 when it was asked for wrongly."""
     options = parser().parse_args(arguments)
     try:
+        if options.compare:
+            return compare(*options.compare, options.out, options.data)
+        if not options.data or not options.out:
+            raise ValueError("--data and --out are needed, or --compare A B")
         return evaluate(options)
     except (ValueError, OSError, SourceChangedError) as error:
         print(f"evaluate: {error}", file=sys.stderr)
@@ -54,8 +69,15 @@ def parser() -> argparse.ArgumentParser:
         epilog=EXAMPLE,
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
-    p.add_argument("--data", type=Path, required=True, help="folder of sequences (OTB, VOT)")
-    p.add_argument("--out", type=Path, required=True, help="folder for results and cache")
+    p.add_argument("--data", type=Path, help="folder of sequences (OTB, VOT)")
+    p.add_argument("--out", type=Path, help="folder for results and cache")
+    p.add_argument(
+        "--compare",
+        nargs=2,
+        metavar=("A", "B"),
+        help="run nothing; print the paired difference B - A of two results folders, each "
+        "FOLDER or FOLDER:TRACKER (its first tracker); into B/compare, or --out",
+    )
     p.add_argument(
         "--trackers",
         default="",
@@ -127,7 +149,7 @@ def evaluate(options: argparse.Namespace) -> int:
             plan.trackers, plan.sequences, options.timing, folder, dead, options.quiet
         )
     scored = score_runs(runs, plan.sequences)
-    results = summarise(plan, scored, timing)
+    results = summarise(plan, scored, timing) | {"data": str(options.data.resolve())}
     options.out.mkdir(parents=True, exist_ok=True)
     (options.out / "results.json").write_text(
         json.dumps(results, indent=1, allow_nan=False) + "\n"
@@ -154,7 +176,8 @@ def _report(
     if options.published:
         excluded = options.published_except.split(",")
         comparison = published.compare(options.published, results, excluded)
-    drawn, listed = plots(results, palette), tables.tables(results, comparison)
+    drawn = plots(results, palette)
+    listed = tables.tables(results, comparison) + evidence_tables.tables(results)
     for page in options.into:
         pages.update(page, results, listed)
         yield page

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 OVERLAP_THRESHOLDS = np.linspace(0, 1, 21)
 ERROR_THRESHOLDS = np.arange(51.0)  # px
 NORMALISED_THRESHOLDS = np.linspace(0, 0.5, 51)  # of the target's size
+ON_TARGET = 0.5  # overlap from which on a box is right
 Floats = NDArray[np.float64]
 
 

@@ -11,12 +11,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from het_ros.evaluation.forewarning import forewarning
-from het_ros.evaluation.metrics import overlaps
+from het_ros.evaluation.metrics import ON_TARGET, overlaps
 from het_ros.evaluation.runs import Run
+from het_ros.evaluation.velocity_metrics import CHI2_95
 
-ON_TARGET = 0.5  # overlap from which on a box is right
 SCORE_BINS = 10
-CHI2_95 = 5.991  # 95 % of the squared errors of 2 dimensions lie under it
 
 Truths = Mapping[str, NDArray[np.float64]]
 

@@ -38,7 +38,11 @@ def strips(
         rows = spaced_peaks(spread, frames)
         found.append((float(np.nanmean(spread)), sequence, runs, rows))
     found.sort(key=lambda item: -item[0])
-    return {seq.name: _strip(seq, runs, rows, palette) for _, seq, runs, rows in found}
+    return {seq.name: strip(seq, _boxes(runs), rows, palette) for _, seq, runs, rows in found}
+
+
+def _boxes(runs: Mapping[str, Scored]) -> dict[str, NDArray[np.float64]]:
+    return {name: s.run.track.boxes for name, s in list(runs.items())[:SHOWN]}
 
 
 def _first_runs(scored: Listing[Scored], sequence: str, ranked: Listing[str]) -> dict[str, Scored]:
@@ -70,19 +74,26 @@ def spaced_peaks(values: NDArray[np.float64], count: int) -> list[int]:
     return sorted(chosen)
 
 
-def _strip(
+def strip(
     sequence: Sequence,
-    runs: Mapping[str, Scored],
+    boxes: Mapping[str, NDArray[np.float64]],
     rows: Listing[int],
     palette: Mapping[str, Colour],
 ) -> bytes:
-    shown = dict(list(runs.items())[:SHOWN])
+    """A JPEG of some frames side by side, the truth and each tracker's box drawn on them.
+
+    Args:
+        sequence: gives images and truth.
+        boxes: (n, 4) px by tracker.
+        rows: the frames.
+        palette: a colour for each tracker.
+    """
     pictures: list[Image] = []
     for row in rows:
         image = sequence.frames[row]
         scale = HEIGHT / image.shape[0]
-        boxes = {name: s.run.track.boxes[row] for name, s in shown.items()}
-        picture = draw_boxes(image, boxes, palette, sequence.truth[row], scale)
+        here = {name: of[row] for name, of in boxes.items()}
+        picture = draw_boxes(image, here, palette, sequence.truth[row], scale)
         draw_label(picture, f"#{row}")
         pictures.append(picture[:HEIGHT])
     width = min(picture.shape[1] for picture in pictures)

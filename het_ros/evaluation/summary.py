@@ -16,7 +16,7 @@ from typing import Any
 import cv2
 import numpy as np
 
-from het_ros.evaluation import restarts, state_metrics
+from het_ros.evaluation import groups, honesty, restarts, state_metrics, velocity
 from het_ros.evaluation.metrics import Score, score
 from het_ros.evaluation.runs import Plan, Run
 from het_ros.evaluation.sequences import Sequence
@@ -43,8 +43,9 @@ def summarise(plan: Plan, scored: Listing[Scored], timing: Timing) -> dict[str, 
     """The content of ``results.json``.
 
     A random tracker's figures are means over its seeds; ``*_std`` is the sample standard
-    deviation of the seeds' means over the sequences. AUC and precision of a tracker are means
-    over sequences, each sequence counting the same, as in OTB.
+    deviation of the seeds' means over the sequences, and ``groups`` holds the means over all and
+    by group of sequences with their standard errors over sequences. AUC and precision of a
+    tracker are means over sequences, each sequence counting the same, as in OTB.
     """
     sequences = {sequence.name: sequence for sequence in plan.sequences}
     trackers = {}
@@ -79,6 +80,7 @@ def _tracker(
         mean, deviation = mean_and_deviation(own, figure)
         figures[figure] = mean
         figures[f"{figure}_std"] = deviation
+    figures["groups"] = _groups(by_sequence)
     figures |= speed(_times(name, own, timing))
     figures["seeds"] = len({s.run.seed for s in own})
     figures["errors"] = [
@@ -93,12 +95,29 @@ def _tracker(
     }
     figures["attributes"] = _attributes(figures["sequences"], sequences)
     truths = {sequence.name: sequence.truth for sequence in sequences.values()}
-    figures |= state_metrics.summarise([s.run for s in own], truths)
+    runs = [s.run for s in own]
+    figures |= state_metrics.summarise(runs, truths) | honesty.summarise(runs, truths)
     if plan.protocol == "realtime":
         figures["realtime"] = rates
     if plan.protocol == "restart":
-        figures |= restarts.summarise([s.run for s in own], truths)
+        figures |= restarts.summarise(runs, truths)
+    else:
+        times = {sequence.name: sequence.frames.dt for sequence in sequences.values()}
+        figures |= velocity.summarise(runs, truths, times)
     return figures
+
+
+def _groups(by_sequence: Mapping[str, list[Scored]]) -> dict[str, Any]:
+    """By figure and group: the mean over sequences, its standard error, and how many they are."""
+    return {
+        figure: {
+            group: {"mean": m.value, "standard_error": m.error, "sequences": m.count}
+            for group, m in groups.means(
+                {name: mean_and_deviation(of, figure)[0] for name, of in by_sequence.items()}
+            ).items()
+        }
+        for figure in FIGURES
+    }
 
 
 def _sequence(name: str, group: list[Scored], timing: Timing) -> dict[str, Any]:

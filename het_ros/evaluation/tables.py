@@ -26,6 +26,11 @@ class Row:
     cells: tuple[Cell, ...]
     ours: bool = False
 
+    @classmethod
+    def of(cls, *texts: str) -> Row:
+        """A row of plain cells."""
+        return cls(tuple(Cell(text) for text in texts))
+
 
 @dataclass(frozen=True)
 class Table:
@@ -85,13 +90,13 @@ def summary(results: Results) -> Table:
         rows.append(
             _row(
                 name,
-                _with_deviation(t, "auc"),
-                _with_deviation(t, "p20"),
+                _with_error(t, "auc"),
+                _with_error(t, "p20"),
                 f"{t['norm_precision']:.3f}",
                 f"{t['mean_overlap']:.3f}",
                 _number(t["fps"], ".1f"),
                 _number(t["p99_ms"], ".1f"),
-                str(t["seeds"]),
+                _seeds(t),
                 str(len(t["errors"])),
             )
         )
@@ -107,14 +112,20 @@ def summary(results: Results) -> Table:
         "Trackers",
         (*head, "seeds", "failed runs"),
         tuple(rows),
-        "Means over sequences, and over the seeds of random trackers with the standard deviation "
-        f"of the seeds. {speed}",
+        "Means over sequences, seeds averaged first, ± the standard error over sequences. Seeds: "
+        f"in brackets the standard deviation of their AUC. {speed}",
     )
 
 
-def _with_deviation(figures: dict[str, Any], key: str) -> str:
+def _with_error(figures: dict[str, Any], key: str) -> str:
+    error = figures["groups"][key]["all"]["standard_error"]
     text = f"{figures[key]:.3f}"
-    return f"{text} ± {figures[key + '_std']:.3f}" if figures["seeds"] > 1 else text
+    return text if error is None else f"{text} ± {error:.3f}"
+
+
+def _seeds(figures: dict[str, Any]) -> str:
+    count = figures["seeds"]
+    return f"{count} (± {figures['auc_std']:.3f})" if count > 1 else str(count)
 
 
 def _number(value: float | None, form: str) -> str:

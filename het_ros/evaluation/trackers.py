@@ -20,9 +20,10 @@ from numpy.typing import NDArray
 
 import het_ros.tracking
 from het_ros.evaluation import opencv_peers
-from het_ros.evaluation.answers import Answer
+from het_ros.evaluation.answers import HORIZONS, Answer
 from het_ros.tracking.box import Box
 from het_ros.tracking.config import TrackerConfig
+from het_ros.tracking.estimate import Estimate
 from het_ros.tracking.parameter import Parameter, parameters_of
 from het_ros.tracking.tracker import HierarchicalEnsembleTracker
 
@@ -58,7 +59,12 @@ class TrackerSpec:
     @property
     def folder(self) -> str:
         """The name as a folder's name."""
-        return re.sub(r"[^\w.=+-]+", "_", self.name)
+        return folder_name(self.name)
+
+
+def folder_name(tracker: str) -> str:
+    """A tracker's name as a folder's name."""
+    return re.sub(r"[^\w.=+-]+", "_", tracker)
 
 
 class Het:
@@ -74,8 +80,24 @@ class Het:
 
     def update(self, image: NDArray[np.uint8], dt: float) -> Answer:
         """Follow into the next image."""
-        e = self._tracker.update(image, dt)
-        return Answer(e.box.as_tuple(), e.state.value, e.score, e.velocity, e.covariance)
+        return answer_of(self._tracker.update(image, dt))
+
+
+def answer_of(e: Estimate) -> Answer:
+    """What an estimate says, with its own prediction where it has one."""
+    return Answer(e.box.as_tuple(), e.state.value, e.score, e.velocity, e.covariance, predicted(e))
+
+
+def predicted(estimate: Any) -> NDArray[np.float64] | None:
+    """(3, 2) centres px, ``HORIZONS`` ahead, of an estimate that has ``predict(dt)``, or None.
+
+    ``predict`` gives a Box, or an estimate that has one.
+    """
+    predict = getattr(estimate, "predict", None)
+    if predict is None:
+        return None
+    found = (predict(seconds) for seconds in HORIZONS)
+    return np.array([getattr(one, "box", one).centre for one in found])
 
 
 class Identity:

@@ -8,7 +8,9 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 
 from het_ros.scene.config import SceneConfig
+from het_ros.scene.motion import ImageMotion, image_motion
 from het_ros.scene.scene import Frame, Scene
+from het_ros.tracking.box import Box
 from het_ros.tracking.config import TrackerConfig
 from het_ros.tracking.estimate import Estimate, State
 from het_ros.tracking.gray import gray_of
@@ -29,20 +31,25 @@ class Moment:
         visible: part of the target that the image shows, 0..1.
         overlap: of the estimated box with the target's, also where it is hidden.
         elsewhere: the largest with another figure's.
+        box: the target's, px, hidden or not; None where it is not before the camera.
+        motion: the target's exact motion in the image, where it is known.
     """
 
     estimate: Estimate
     visible: float
     overlap: float
     elsewhere: float
+    box: Box | None = None
+    motion: ImageMotion | None = None
 
     @classmethod
-    def of(cls, frame: Frame, estimate: Estimate) -> Moment:
+    def of(cls, frame: Frame, estimate: Estimate, motion: ImageMotion | None = None) -> Moment:
         """Of a rendered frame and the answer to it."""
         overlap = estimate.box.iou(frame.box) if frame.box else 0.0
         others = (estimate.box.iou(other) for other in frame.others)
         elsewhere = max(others, default=0.0)
-        return cls(estimate, float(frame.visible), float(overlap), float(elsewhere))
+        seen = float(frame.visible)
+        return cls(estimate, seen, float(overlap), float(elsewhere), frame.box, motion)
 
     @property
     def tracked(self) -> bool:
@@ -86,14 +93,15 @@ def followed(
 ) -> list[Moment]:
     """Render a scene and follow its target from its first frame; ``gray``: without colours."""
     tracker, moments = HierarchicalEnsembleTracker(tracker_config), []
-    for frame in Scene(config).frames():
+    scene = Scene(config)
+    for frame in scene.frames():
         image = gray_of(frame.image) if gray else frame.image
         if frame.index:
             estimate = tracker.update(image, 1 / config.rate)
         else:
             assert frame.box is not None  # every story begins with the target in sight
             estimate = tracker.init(image, frame.box)
-        moments.append(Moment.of(frame, estimate))
+        moments.append(Moment.of(frame, estimate, image_motion(scene, frame.stamp)))
     return moments
 
 

@@ -4,7 +4,8 @@
 
 Each story is rendered from several seeds (street, clothes, gait, shake and noise), followed with
 the default configuration and judged: did TRACKING mean that the target was in sight, did the box
-come back to it, was it ever trusted on something else. Prints a Markdown table.
+come back to it, was it ever trusted on something else; and how far was the velocity from the true
+one. Prints two Markdown tables.
 """
 
 from __future__ import annotations
@@ -17,6 +18,7 @@ from dataclasses import asdict, replace
 from functools import partial
 from multiprocessing import get_context
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from tqdm import tqdm
@@ -24,6 +26,7 @@ from tqdm import tqdm
 from het_ros.ros.threads import one_thread
 from het_ros.scene import STORIES, SceneConfig
 from het_ros.scene.honesty import Honesty, followed, honesty
+from het_ros.tools import scene_velocity
 from het_ros.tools.arguments import command
 from het_ros.tracking.config import TrackerConfig
 
@@ -43,10 +46,13 @@ EXAMPLE = """example:
 """
 
 
-def judged(config: SceneConfig, tracker_seed: int = 0, gray: bool = False) -> Honesty:
-    """Follow one scene and judge it."""
+def judged(
+    config: SceneConfig, tracker_seed: int = 0, gray: bool = False
+) -> tuple[Honesty, dict[str, Any] | None]:
+    """Follow one scene; its honesty, and how good its velocity was where that can be said."""
     one_thread()  # scenes run side by side
-    return honesty(followed(config, TrackerConfig(seed=tracker_seed), gray), config.rate)
+    moments = followed(config, TrackerConfig(seed=tracker_seed), gray)
+    return honesty(moments, config.rate), scene_velocity.velocity_of(moments, config.rate)
 
 
 def table(results: Sequence[tuple[SceneConfig, Honesty]]) -> str:
@@ -106,12 +112,18 @@ def main(argv: list[str] | None = None) -> int:
     # A fork of a process that has OpenCV's or ROS's threads may hang in their locks.
     with ProcessPoolExecutor(options.jobs, mp_context=get_context("spawn")) as pool:
         judge = partial(judged, tracker_seed=options.tracker_seed, gray=options.gray)
-        found = pool.map(judge, configs)
-        results = list(zip(configs, tqdm(found, total=len(configs), unit="scene"), strict=True))
+        found = list(tqdm(pool.map(judge, configs), total=len(configs), unit="scene"))
+    results = [(config, honest) for config, (honest, _) in zip(configs, found, strict=True)]
+    moved = [moves for _, moves in found]
     print(table(results))
+    stories_moved = ((config.story, moves) for config, moves in zip(configs, moved, strict=True))
+    print(f"\n{scene_velocity.table(stories_moved)}")
     if options.out:
         options.out.parent.mkdir(parents=True, exist_ok=True)
-        rows = [{"scene": asdict(config), **asdict(one)} for config, one in results]
+        rows = [
+            {"scene": asdict(config), **asdict(one), "velocity": moves}
+            for (config, one), moves in zip(results, moved, strict=True)
+        ]
         options.out.write_text(json.dumps(rows, indent=1) + "\n")
     return 0
 

@@ -74,9 +74,18 @@ def test_the_whole_command(folder, capsys):
     text = (folder / "out" / "report.md").read_text()
     assert "| het |" in text
     assert "OTHER" in text
-    assert "Did it know?" in text
+    for title in ("Did it know?", "In short", "AUC by group", "Honesty"):
+        assert f"## {title}\n" in text
+    assert found["data"] == str(folder / "data")
+    mean, groups = het["auc"], het["groups"]["auc"]
+    assert groups["all"]["mean"] == pytest.approx(mean)
+    assert groups["all"]["sequences"] == 2
+    assert {"confident", "off", "recall"} <= het["honesty"]["sequences"]["walk"].keys()
     for plot in re.findall(r"\((plots/.*?)\)", text):
         assert (folder / "out" / plot).read_bytes().startswith(b"\x89PNG")
+    compared = folder / "compared"
+    assert cli.main(["--compare", *[str(folder / "out")] * 2, "--out", str(compared)]) == 0
+    assert "## Honesty and velocity" in (compared / "compare.md").read_text()
     page = (folder / "out" / "report.html").read_text()
     assert "data:image/png;base64," in page
     assert "data:image/jpeg;base64," in page
@@ -104,7 +113,7 @@ def test_every_protocol_runs_and_reports(folder, protocol, variants):
     assert 0 < tracker["auc"] < 1
     if protocol == "realtime":
         assert set(tracker["realtime"]) == {"20", "30", "60"}
-        assert tracker["realtime"]["60"]["frames_seen"] == 1
+        assert 0 < tracker["realtime"]["60"]["frames_seen"] <= 1
     if protocol == "restart":
         assert tracker["failures"] == 1, "14 px wide and 2 px a frame: outside after 7 frames"
         assert tracker["accuracy"] is None, "it never lasts longer than the burn-in"

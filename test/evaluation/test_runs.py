@@ -164,6 +164,20 @@ def test_a_broken_file_in_the_cache_is_run_again(two, tmp_path):
     assert same(tracks(first), tracks(carry_out_plan(Plan([JITTER], two), cache, quiet=True)))
 
 
+def test_a_result_from_before_a_field_was_recorded_is_run_again(two, tmp_path):
+    plan, cache = Plan([tracker_spec("het")], two[:1]), Cache(tmp_path / "c")
+    first = carry_out_plan(plan, cache, quiet=True)
+    (file,) = (tmp_path / "c").rglob("*.npz")
+    with np.load(file) as saved:
+        older = {name: saved[name] for name in saved.files if name != "velocity_covariances"}
+    np.savez_compressed(file, **older)
+    again = carry_out_plan(plan, cache, quiet=True)
+    assert same(tracks(first), tracks(again))
+    assert np.isfinite(again[0].track.velocity_covariances[1:]).all()
+    with np.load(file) as saved:
+        assert "velocity_covariances" in saved.files
+
+
 def test_the_cache_keeps_every_field(two, tmp_path):
     cache = Cache(tmp_path / "c")
     (found,) = carry_out_plan(Plan([tracker_spec("het")], two[:1]), cache, quiet=True)

@@ -77,7 +77,8 @@ def test_a_flood_of_wrong_boxes(lockstep, steady_memory):
     assert lockstep.state() == "TRACKING"
     assert np.mean(lockstep.overlaps(lockstep.steady(20))) > 0.5
     lines = lockstep.log.read_text().splitlines()[before:]
-    assert 1 <= sum("init box refused" in line for line in lines) <= 20
+    # One line in some seconds; how many that makes depends on how long the flood takes here.
+    assert 1 <= sum("init box refused" in line for line in lines) < FLOOD / 5
 
 
 def test_a_flood_of_calls(lockstep, steady_memory):

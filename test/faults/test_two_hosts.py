@@ -36,9 +36,9 @@ def test_a_network_that_is_cut_and_mended(two_hosts):
     )
     assert ended.returncode == 0
     told = json.loads(ended.stdout)
-    assert told["before"]["TRACKING"] > 10
+    assert told["before"]["TRACKING"] > 0
     assert told["answered_while_cut"] == 0
     assert told["first_after"]["state"] == "LOST"
     assert "no image for" in told["first_after"]["reason"]
-    assert told["after_a_box"]["TRACKING"] > 10
+    assert told["after_a_box"]["TRACKING"] > 0
     assert told["tracker_alive"]

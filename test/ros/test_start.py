@@ -6,6 +6,7 @@ import sys
 import threading
 
 import pytest
+from graph import PATIENCE
 
 from het_ros.ros.start import ended_by_ctrl_c
 
@@ -30,7 +31,7 @@ def test_ctrl_c_while_it_still_imports_ends_the_tracker(name):
         [sys.executable, "-c", CTRL_C_IN_THE_IMPORT_OF.format(name=name)],
         capture_output=True,
         text=True,
-        timeout=30,
+        timeout=PATIENCE,
         check=False,
     )
     assert ended.stdout == "there\n"

@@ -6,6 +6,7 @@ import cv2
 import numpy as np
 import pytest
 from geometry_msgs.msg import PolygonStamped
+from graph import PATIENCE
 from rclpy.parameter import Parameter
 from sensor_msgs.msg import CompressedImage, Image, RegionOfInterest
 from std_srvs.srv import SetBool, Trigger
@@ -278,7 +279,7 @@ def test_a_fault_in_the_tracker_is_a_loss_not_a_crash(hand, made_footage, monkey
 
 def call(graph, kind, name, request):
     client = graph.nodes[-1].create_client(kind, name)
-    assert client.wait_for_service(10)
+    assert client.wait_for_service(PATIENCE)
     future = client.call_async(request)
     graph.spin_until(future.done, name)
     return future.result()

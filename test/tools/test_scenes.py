@@ -16,11 +16,12 @@ def test_a_story_is_followed_and_told(capsys, tmp_path, monkeypatch, more):
     out = tmp_path / "results" / "scenes.json"
     given = ["--stories", "plain_walk", "--seeds", "2", "--jobs", "1", "--out", str(out)]
     assert scenes.main(given + more) == 0
-    table = capsys.readouterr().out
-    assert "| plain_walk | 2 | 2 |" in table
+    tables = capsys.readouterr().out
+    assert "| plain_walk | 2 | 2 |" in tables
+    assert "No scene has enough frames" in tables, "ten frames are too few for a velocity"
     rows = json.loads(out.read_text())
     assert [row["scene"]["seed"] for row in rows] == [0, 1]
-    assert all(row["ends_on_target"] for row in rows)
+    assert all(row["ends_on_target"] and row["velocity"] is None for row in rows)
 
 
 def test_what_the_table_says_of_good_and_bad_scenes():
