@@ -24,7 +24,14 @@ from het_ros.tracking.cost import check_cost
 from het_ros.tracking.estimate import Estimate, Patch, State, lasting_deviation
 from het_ros.tracking.features.extractor import FeatureExtractor, target_cells
 from het_ros.tracking.middle.size import Size
-from het_ros.tracking.middle.voting import Peak, best_place, distractor
+from het_ros.tracking.middle.fusion import (
+    Agreement,
+    FusionConfig,
+    followed_size,
+    fused_place,
+    network_is_right,
+)
+from het_ros.tracking.middle.voting import Peak, best_place, distractor, peak_near
 from het_ros.tracking.top.background import Background
 from het_ros.tracking.top.confidence import Confidence, Decision
 from het_ros.tracking.top.ego_motion import EgoMotion
@@ -48,6 +55,8 @@ class _Found:
         score: mean score of the sub-patches there; ``distractor`` the highest elsewhere.
         colour: likelihood of the colours there.
         weights: (Q,) of the sub-patches there.
+        proposal: the network's box there, if it is followed.
+        agreement: what the network says of it, if there is one.
     """
 
     look: Look
@@ -58,8 +67,22 @@ class _Found:
     colour: float
     weights: Floats
     proposal: Proposal | None = None
-    agreement: float = 1.0
-    network_score: float = 0.0
+    agreement: Agreement | None = None
+
+
+@dataclass(frozen=True)
+class _Votes:
+    """Votes for each place of the target's corner, (rows, columns) float32.
+
+    Attributes:
+        template: mean score of the sub-patches.
+        colour: likelihood of the colours.
+        response: all together.
+    """
+
+    template: Plane
+    colour: Plane
+    response: Plane
 
 
 class Target:
@@ -73,8 +96,6 @@ class Target:
     Raises:
         ValueError: it would take more memory than ``most_memory``.
     """
-    P = dict(agree=0.5, w=0.7, lam=0.5, gain=0.25)
-
     def __init__(self, config: TrackerConfig, image: Image, box: Box) -> None:
         rng = np.random.default_rng(config.seed)
         cells = target_cells((box.w, box.h), config.working_side)
@@ -120,6 +141,7 @@ class Target:
         self._confidence = Confidence(config.lost_after)
         self._last_seen = np.array(box.centre)
         self._score = 1.0
+        self.probe=()
         look = self._look(image, np.array(box.centre))
         self._learn(look, box, 1.0, 1.0)
 
@@ -144,7 +166,7 @@ class Target:
         """
         step = self._motion.step(dt)
         self._predict(image, dt, step)
-        found = self._find(self._look(image, self._search_place(image, candidates)))
+        found = self._find(image, self._search_place(image, candidates))
         decision = self._judge(found, image, step, witness)
         self._score = decision.score
         if not decision.follow:
@@ -189,69 +211,76 @@ class Target:
             frame, image, self._motion.centre, self._size.size, cells, places, self._score
         )
 
-    def _find(self, look: Look) -> _Found:
+    def _find(self, image: Image, at: Floats) -> _Found:
         """All base ensembles vote; the best place is the target's if anything is."""
-        config = self._config
-        template = self._patches.vote(look)
-        colour = self._colour.vote(look)
-        response = (1 - config.colour_weight) * template + config.colour_weight * colour
+        look = self._look(image, at)
+        if self._network is None:
+            return self._best_of(look, self._vote(look))
+        proposal = self._network.propose(look, at)
+        theirs = np.array(proposal.box.centre)
+        if proposal.score > FusionConfig().sure and not self._shows(look, theirs):
+            look = self._look(image, theirs)
+        return self._fused(look, self._vote(look), proposal)
+
+    def _vote(self, look: Look) -> _Votes:
+        share = self._config.colour_weight
+        template, colour = self._patches.vote(look), self._colour.vote(look)
+        response = (1 - share) * template + share * colour
         near = self._flow.vote(look)
         if near is not None:
             # A factor: what slides over the target moves smoothly too, but does not look like it.
-            response = response * (1 + config.flow_weight * near)
-        peak = best_place(response)
-        if self._network is None:
-            return self._at(look, peak, template, colour)
-        return self._fused(look, peak, template, colour, response)
+            response = response * (1 + self._config.flow_weight * near)
+        return _Votes(template, colour, response)
 
-    def _at(self, look: Look, peak: Peak, template: Plane, colour: Plane) -> _Found:
-        """A target with its corner at a peak, and what speaks for it."""
+    def _best_of(self, look: Look, votes: _Votes) -> _Found:
+        peak = best_place(votes.response)
+        return self._at(look, votes, peak, look.centre_of(peak.corner))
+
+    def _at(self, look: Look, votes: _Votes, peak: Peak, centre: Floats) -> _Found:
+        """A target with its ``centre`` (x, y) there, image px, next to a peak of the votes."""
         row, column = peak.row, peak.column
         return _Found(
             look,
             peak,
-            self._box(look.centre_of(peak.corner)),
-            float(template[row, column]),
-            distractor(template, peak, look.cells),
-            float(colour[row, column]) ** self._colour_power,
+            self._box(centre),
+            float(votes.template[row, column]),
+            distractor(votes.template, peak, look.cells),
+            float(votes.colour[row, column]) ** self._colour_power,
             self._patches.scores_at(row, column),
         )
 
-    def _fused(
-        self, look: Look, peak: Peak, template: Plane, colour: Plane, response: Plane
-    ) -> _Found:
+    def _shows(self, look: Look, centre: Floats) -> bool:
+        """Whether a target with its ``centre`` there is voted for in this look."""
+        column, row = look.corner_of(centre).tolist()
+        return 0 <= row <= look.places[0] - 1 and 0 <= column <= look.places[1] - 1
+
+    def _fused(self, look: Look, votes: _Votes, proposal: Proposal) -> _Found:
         """The place that network and ensembles agree on, or the likelier of their two places."""
-        P = self.P
-        assert self._network
-        side = float(np.sqrt(look.size.prod()))
-        ours = look.centre_of(peak.corner)
-        at = look.expected if not self._confidence.unseen else look.frame.window.to_image(np.array(look.frame.channels[0].shape[::-1]) / 2)
-        proposal = self._network.propose(look, at)
-        theirs = np.array(proposal.box.centre)
-        apart = float(np.hypot(*(theirs - ours))) / side
-        here = proposal.score_at(ours, 0.3 * side)
-        corner = look.corner_of(theirs)
-        row, column = (round(float(v)) for v in (corner[1], corner[0]))
-        inside = 0 <= row < look.places[0] and 0 <= column < look.places[1]
-        there = float(response[max(0, row - 2) : row + 3, max(0, column - 2) : column + 3].max()) if inside else 0.0
-        best = float(response[peak.row, peak.column])
-        self.probe = (apart, proposal.score, here, best, there, self._confidence._score)
-        if apart < P["agree"]:
-            w = P["w"]
-            corner = look.corner_of(w * theirs + (1 - w) * ours)
-            chosen = proposal
-        elif P["lam"] * (best - there) / max(self._confidence._score, 0.05) > proposal.score - here or not inside:
-            found = self._at(look, peak, template, colour)
-            return replace(found, proposal=None, agreement=min(apart, 1.0), network_score=here)
-        else:
-            chosen = proposal
-        row, column = (min(max(round(float(v)), 0), n - 1) for v, n in zip(corner[::-1], look.places, strict=True))
-        top, left = max(0, row - 2), max(0, column - 2)
-        near = template[top : row + 3, left : column + 3]
-        r, c = divmod(int(near.argmax()), near.shape[1])
-        moved = Peak(corner, top + r, left + c)
-        found = self._at(look, moved, template, colour)
-        return replace(found, proposal=chosen, agreement=min(apart, 1.0), network_score=proposal.score)
+        config, side = FusionConfig(), math.sqrt(float(look.size.prod()))
+        ours = self._best_of(look, votes)
+        place, theirs = np.array(ours.box.centre), np.array(proposal.box.centre)
+        apart = float(np.hypot(*(theirs - place))) / side
+        if apart < config.agree:
+            centre = fused_place(place, theirs)
+            found = self._at(look, votes, peak_near(votes.template, look.corner_of(centre)), centre)
+            return replace(
+                found, proposal=proposal, agreement=Agreement(proposal.score, apart)
+            )
+        here = proposal.score_at(place, config.near * side)
+        there = peak_near(votes.response, look.corner_of(theirs))
+        gained = votes.response[there.row, there.column] - votes.response.max()
+        moved = [
+            min(float(np.hypot(*(centre - look.expected))) / side, 1.5)
+            for centre in (theirs, place)
+        ]
+        self.probe = (apart, proposal.score, here, float(votes.response.max()), float(votes.response[there.row, there.column]), self._confidence.usual, *theirs.tolist(), *place.tolist(), *look.expected.tolist())
+        if network_is_right(
+            proposal.score - here, float(gained) / self._confidence.usual, moved[0] - moved[1]
+        ):
+            found = self._at(look, votes, there, theirs)
+            agreement = Agreement(proposal.score, min(apart, 1.0))
+            return replace(found, proposal=proposal, agreement=agreement)
+        return replace(ours, agreement=Agreement(here, min(apart, 1.0)))
 
     def _judge(
         self,
@@ -273,7 +302,7 @@ class Target:
             float(found.weights.std()),
             occluded,
             dt,
-            (found.network_score, found.agreement) if self._network else None,
+            found.agreement,
         )
 
     def _coast(self) -> None:
@@ -301,10 +330,8 @@ class Target:
             middle = found.peak.corner + np.array(found.look.cells) / 2
             ratio = self._size.follow(found.look.frame, middle, self._flow.flow, dt)
         if found.proposal:
-            p = found.proposal
-            gain = self.P["gain"] * p.score * p.steady
             before = self._size.size
-            self._size.size = before * np.exp(gain * np.log(np.array([p.box.w, p.box.h]) / before))
+            self._size.size = followed_size(before, found.proposal)
             ratio *= math.sqrt(float((self._size.size / before).prod()))
         box = self._box(centre)
         self._learn(found.look, box, ratio, decision.weight)

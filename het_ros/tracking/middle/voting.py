@@ -21,10 +21,12 @@ class VotingConfig:
         apart: target sides from the best place beyond which another one is a distractor, a
             secondary peak (chosen: boxes so far apart overlap by less than half).
         least_apart: the same in cells (geometry: a peak is that wide).
+        near: cells around a given place in which its votes are read (geometry: likewise).
     """
 
     apart: float = 0.35
     least_apart: int = 2
+    near: int = 2
 
 
 @dataclass(frozen=True)
@@ -47,6 +49,18 @@ def best_place(response: Plane) -> Peak:
     x = column + parabola_offset(response[row], column)
     y = row + parabola_offset(response[:, column], row)
     return Peak(np.array([x, y]), row, column)
+
+
+def peak_near(response: Plane, corner: Floats) -> Peak:
+    """The highest of the places next to a corner (x, y), cells; the corner itself is kept."""
+    reach = VotingConfig().near
+    rows, columns = response.shape
+    column = min(max(round(float(corner[0])), 0), columns - 1)
+    row = min(max(round(float(corner[1])), 0), rows - 1)
+    top, left = max(0, row - reach), max(0, column - reach)
+    around = response[top : row + reach + 1, left : column + reach + 1]
+    down, right = divmod(int(around.argmax()), around.shape[1])
+    return Peak(corner, top + down, left + right)
 
 
 def distractor(template: Plane, peak: Peak, cells: tuple[int, int]) -> float:

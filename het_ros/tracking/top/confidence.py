@@ -16,7 +16,8 @@ import math
 from dataclasses import astuple, dataclass
 
 from het_ros.tracking.estimate import State
-from het_ros.tracking.top.calibration import CALIBRATION
+from het_ros.tracking.middle.fusion import Agreement
+from het_ros.tracking.top.calibration import CALIBRATION, CALIBRATION_WITH_NETWORK
 
 LARGEST = 50.0  # a logit beyond which nothing changes but that exp() overflows; geometry
 
@@ -52,10 +53,18 @@ class Features:
         )
 
 
-def probability(features: Features) -> float:
-    """Probability that the box at that place is right (overlap over 0.5), 0..1."""
-    *weights, bias = CALIBRATION
-    logit = bias + sum(w * x for w, x in zip(weights, features.clipped(), strict=True))
+def probability(features: Features, agreement: Agreement | None = None) -> float:
+    """Probability that the box at a place is right (overlap over 0.5), 0..1.
+
+    Args:
+        features: of the place.
+        agreement: what a network says of it, where there is one.
+    """
+    known, fitted = features.clipped(), CALIBRATION
+    if agreement:
+        known, fitted = (*known, *astuple(agreement)), CALIBRATION_WITH_NETWORK
+    *weights, bias = fitted
+    logit = bias + sum(w * x for w, x in zip(weights, known, strict=True))
     return 1 / (1 + math.exp(-min(max(logit, -LARGEST), LARGEST)))
 
 
@@ -129,6 +138,11 @@ class Confidence:
         self.features: Features | None = None
         self.unseen = 0
 
+    @property
+    def usual(self) -> float:
+        """Exponential average of the sub-patches' score, about 1 or less."""
+        return max(self._score, 0.05)
+
     def judge(
         self,
         score: float,
@@ -138,7 +152,7 @@ class Confidence:
         spread: float,
         occluded: bool,
         dt: float,
-        network: tuple[float, float] | None = None,
+        agreement: Agreement | None = None,
     ) -> Decision:
         """Judge one frame.
 
@@ -150,6 +164,7 @@ class Confidence:
             spread: deviation of the sub-patches' scores there.
             occluded: whether the background or another sensor says that something else is there.
             dt: time since the last frame, s.
+            agreement: what a network says of the place, where there is one.
         """
         config = self._config
         self._frames += 1
@@ -160,10 +175,8 @@ class Confidence:
         relative = score / self._score
         found = Features(score, self._score, relative, share, elsewhere, moved, spread)
         self.features = found
-        likely = probability(found)
-        self.network = network
-        if network:
-            likely = netprob(found, network)
+        self.agreement = agreement
+        likely = probability(found, agreement)
         if self._frames <= config.new:
             likely = max(likely, config.back)
         ambiguous = elsewhere > config.ambiguous
@@ -196,13 +209,3 @@ class Confidence:
         self._score += rate * (score - self._score)
         self._colour += rate * (colour - self._colour)
 
-
-NET = None
-
-
-def netprob(f, n):
-    if NET is None:
-        return max(probability(f), 0.9 * n[0] * (1 if n[1] < 0.5 else 0.3))
-    x = [*f.clipped(), n[0], n[1], 1.0]
-    z = sum(a * b for a, b in zip(NET, x))
-    return 1 / (1 + math.exp(-min(max(z, -50), 50)))
