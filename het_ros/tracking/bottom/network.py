@@ -38,6 +38,8 @@ class NetworkConfig:
     window: float = 0.455
     penalty: float = 0.138
     smallest: float = 2.0
+    bias: float = 0.5
+    most_bias: float = 0.4
 
 
 @dataclass(frozen=True)
@@ -79,10 +81,21 @@ class NetworkEnsemble:
         self._network = Siamese.read(folder)
         hann = np.hanning(self._network.places)
         self._window = np.outer(hann, hann)
+        self._stretch, self._offset = np.ones(2), np.zeros(2)
 
     def start(self, image: Pixels, box: Box) -> None:
         """Take the target in ``box`` of the image, (H, W, 3) or (H, W) uint8."""
-        self._network.template(bgr_of(image), box)
+        pixels = bgr_of(image)
+        self._network.template(pixels, box)
+        scores, boxes = self._network.look(pixels, box.centre, (box.w, box.h))
+        best = np.unravel_index(int((scores * self._window).argmax()), scores.shape)
+        x, y, width, height = boxes[(slice(None), *best)].tolist()
+        wanted = np.array([box.w, box.h])
+        seen = np.maximum(np.array([width, height]), self._config.smallest)
+        most, belief = self._config.most_bias, self._config.bias
+        self._stretch = np.exp(belief * np.clip(np.log(wanted / seen), -most, most))
+        middle = np.array([x + width / 2, y + height / 2])
+        self._offset = belief * np.clip((np.array(box.centre) - middle) / seen, -most, most)
 
     def propose(self, look: Look, at: Floats) -> Proposal:
         """Look around a place.
@@ -94,8 +107,10 @@ class NetworkEnsemble:
         config = self._config
         width, height = look.size.tolist()
         scores, boxes = self._network.look(bgr_of(look.image), (at[0], at[1]), (width, height))
-        w, h = np.maximum(boxes[2:].astype(np.float64), config.smallest)
-        centres = np.stack([boxes[0] + boxes[2] / 2, boxes[1] + boxes[3] / 2], axis=-1)
+        sides = np.maximum(boxes[2:].astype(np.float64), config.smallest)
+        offsets = self._offset[:, None, None] * sides
+        centres = np.moveaxis(boxes[:2] + boxes[2:] / 2 + offsets, 0, -1)
+        w, h = self._stretch[:, None, None] * sides
         size = _context(w, h) / _context(width, height)
         aspect = (w / h) / (width / height)
         change = np.maximum(size, 1 / size) * np.maximum(aspect, 1 / aspect)
