@@ -11,8 +11,9 @@ import sys
 from collections.abc import Iterator
 from pathlib import Path
 
-from het_ros.evaluation import opencv_peers, pages, published, raw_boxes, report, tables
+from het_ros.evaluation import pages, published, raw_boxes, report, tables
 from het_ros.evaluation.cache import Cache
+from het_ros.evaluation.choice import chosen
 from het_ros.evaluation.drawing import colours
 from het_ros.evaluation.jobs import DIED, SourceChangedError
 from het_ros.evaluation.plots import plots
@@ -22,7 +23,7 @@ from het_ros.evaluation.runs import Plan, Run, carry_out_plan
 from het_ros.evaluation.strips import strips
 from het_ros.evaluation.summary import Scored, score_runs, summarise
 from het_ros.evaluation.timing import Timing, time_trackers
-from het_ros.evaluation.trackers import DEFAULT, TrackerSpec, split_names, tracker_spec
+from het_ros.evaluation.trackers import DEFAULT
 from het_ros.evaluation.video import write_videos
 
 EXAMPLE = """\
@@ -30,6 +31,7 @@ examples:
   evaluate --data ../shared/sequences --out out/dev --seeds 3
   evaluate --data ../shared/sequences --out out/try --sequences Crossing,Woman --timing 0 \\
       --trackers het,het:sub_patches=5,small@het:small.yaml,csrt
+  evaluate --data ../shared/sequences --out out/peers --models ../shared/models --seeds 3
 """
 
 
@@ -60,7 +62,13 @@ def parser() -> argparse.ArgumentParser:
         "--trackers",
         default="",
         help="comma-separated; het:field=value,... or name@het:file.yaml for a configuration "
-        f"(default: {','.join(DEFAULT)})",
+        f"(default: {','.join(DEFAULT)}, and those of --models)",
+    )
+    p.add_argument(
+        "--models",
+        type=Path,
+        help="folder with ONNX files of NanoTrack and VitTrack: adds nanotrack-v2, "
+        "nanotrack-v3, vit, vit-corrected",
     )
     p.add_argument("--seeds", type=_positive, default=1, help="seeds of random trackers (1)")
     p.add_argument("--protocol", choices=PROTOCOLS, default="ope", help="(ope)")
@@ -108,8 +116,11 @@ def parser() -> argparse.ArgumentParser:
 def evaluate(options: argparse.Namespace) -> int:
     """Plan, run, score and report."""
     names = tuple(name for name in options.sequences.split(",") if name)
+    choice = chosen(options.trackers, options.models)
+    for note in choice.notes:
+        print(f"evaluate: {note}", file=sys.stderr)
     plan = Plan(
-        trackers=_trackers(options.trackers),
+        trackers=choice.trackers,
         sequences=read_sequences(options.data, names, _rates(options.fps)),
         protocol=options.protocol,
         seeds=options.seeds,
@@ -127,7 +138,7 @@ def evaluate(options: argparse.Namespace) -> int:
             plan.trackers, plan.sequences, options.timing, folder, dead, options.quiet
         )
     scored = score_runs(runs, plan.sequences)
-    results = summarise(plan, scored, timing)
+    results = summarise(plan, scored, timing) | {"notes": choice.notes}
     options.out.mkdir(parents=True, exist_ok=True)
     (options.out / "results.json").write_text(
         json.dumps(results, indent=1, allow_nan=False) + "\n"
@@ -164,22 +175,6 @@ def _report(
     if options.video:
         folder = options.out / "video"
         yield from write_videos(runs, plan.sequences, palette, folder, options.quiet)
-
-
-def _trackers(text: str) -> list[TrackerSpec]:
-    if text:
-        specs = [tracker_spec(name) for name in split_names(text)]
-        if len({spec.folder for spec in specs}) < len(specs):
-            raise ValueError(f"--trackers {text} names one twice: label one as label@het:...")
-        return specs
-    present = [n for n in DEFAULT if n.startswith("het") or n in opencv_peers.available()]
-    absent = [n for n in DEFAULT if n not in present]
-    if absent:
-        print(
-            f"evaluate: left out, for they need opencv-contrib: {', '.join(absent)}",
-            file=sys.stderr,
-        )
-    return [tracker_spec(name) for name in present]
 
 
 def _rates(text: str) -> dict[str, float]:
