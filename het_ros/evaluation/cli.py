@@ -10,8 +10,9 @@ import os
 import sys
 from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
-from het_ros.evaluation import pages, published, raw_boxes, report, tables
+from het_ros.evaluation import other_boxes, pages, published, raw_boxes, report, tables
 from het_ros.evaluation.cache import Cache
 from het_ros.evaluation.choice import chosen
 from het_ros.evaluation.drawing import colours
@@ -32,6 +33,7 @@ examples:
   evaluate --data ../shared/sequences --out out/try --sequences Crossing,Woman --timing 0 \\
       --trackers het,het:sub_patches=5,small@het:small.yaml,csrt
   evaluate --data ../shared/sequences --out out/peers --models ../shared/models --seeds 3
+  evaluate --data ../shared/sequences --out out/beside --boxes EFSCF=efscf/OTB100
 """
 
 
@@ -99,6 +101,14 @@ def parser() -> argparse.ArgumentParser:
         metavar="SEQUENCES",
         help="comma-separated; sequences of DATA that are not the published ones",
     )
+    p.add_argument(
+        "--boxes",
+        action="append",
+        default=[],
+        metavar="NAME=FOLDER",
+        help="boxes of another tracker, FOLDER/SEQUENCE.txt in OTB's text (x,y,w,h a line, "
+        "counted from 1), to be scored beside ours; may be given several times",
+    )
     p.add_argument("--video", action="store_true", help="one annotated MP4 a sequence")
     p.add_argument(
         "--into",
@@ -128,6 +138,7 @@ def evaluate(options: argparse.Namespace) -> int:
     )
     if options.published:
         published.read(options.published)  # complain now, not after hours
+    others = _others(options, plan)
     cache = Cache(options.out / "cache")
     runs = carry_out_plan(plan, cache, options.jobs, options.scheduler, options.quiet)
     timing = Timing()
@@ -138,7 +149,7 @@ def evaluate(options: argparse.Namespace) -> int:
             plan.trackers, plan.sequences, options.timing, folder, dead, options.quiet
         )
     scored = score_runs(runs, plan.sequences)
-    results = summarise(plan, scored, timing) | {"notes": choice.notes}
+    results = summarise(plan, scored, timing) | {"notes": choice.notes, "boxes": others}
     options.out.mkdir(parents=True, exist_ok=True)
     (options.out / "results.json").write_text(
         json.dumps(results, indent=1, allow_nan=False) + "\n"
@@ -148,6 +159,13 @@ def evaluate(options: argparse.Namespace) -> int:
     for file in _report(options, plan, runs, scored, results):
         print(file)
     return 0
+
+
+def _others(options: argparse.Namespace, plan: Plan) -> dict[str, Any]:
+    folders = other_boxes.named(options.boxes)
+    if folders and plan.protocol != "ope":
+        raise ValueError("--boxes goes with --protocol ope: boxes of one run from the first frame")
+    return other_boxes.scored(folders, plan.sequences, options.published_except.split(","))
 
 
 def _report(
@@ -166,6 +184,7 @@ def _report(
         excluded = options.published_except.split(",")
         comparison = published.compare(options.published, results, excluded)
     drawn, listed = plots(results, palette), tables.tables(results, comparison)
+    listed += other_boxes.tables(results["boxes"], results)
     for page in options.into:
         pages.update(page, results, listed)
         yield page
