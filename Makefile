@@ -31,6 +31,7 @@ help: ## What there is to make
 	@echo 'make run [VIDEO=file INIT=x,y,w,h | SEQUENCE=folder] [OUT=out/run]'
 	@echo 'make evaluate DATA=folder [OUT=out/evaluate] [TRACKERS=het,csrt] [SEEDS=3]'
 	@echo '     [PROTOCOL=ope|tre|sre|passes|realtime|restart] [SEQUENCES=a,b] [SCHEDULER=tcp://host:8786]'
+	@echo '     [MODELS=folder] [BOXES="NAME=folder ..."]'
 	@echo 'make compare A=folder B=folder[:tracker] [OUT=folder] [DATA=folder]'
 	@echo 'make scenes [OUT=out/scenes] [SCENES="--seeds 20 --stories lookalike_crosses"]'
 	@echo 'make bench [OUT=out/bench] [DATA=folder]'
@@ -123,7 +124,8 @@ soak: $(BUILT) ## The tracker for MINUTES=60 at 30 frames/s: memory, latency, fi
 DATA ?=
 PEER_OPTIONS = $(if $(TRACKERS),--trackers '$(TRACKERS)') $(if $(SEEDS),--seeds $(SEEDS)) \
 	$(if $(PROTOCOL),--protocol $(PROTOCOL)) $(if $(SEQUENCES),--sequences '$(SEQUENCES)') \
-	$(if $(SCHEDULER),--scheduler '$(SCHEDULER)') $(if $(PUBLISHED),--published '$(PUBLISHED)')
+	$(if $(SCHEDULER),--scheduler '$(SCHEDULER)') $(if $(PUBLISHED),--published '$(PUBLISHED)') \
+	$(if $(MODELS),--models '$(MODELS)') $(foreach pair,$(BOXES),--boxes '$(pair)')
 
 evaluate: OUT ?= out/evaluate
 evaluate: $(BUILT) $(PEERS)/.ready ## Score this tracker and OpenCV's on DATA=folder

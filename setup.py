@@ -46,6 +46,14 @@ EXTRAS = {
     "bags": ["rosbags>=0.10,<0.12", "tqdm>=4.60", "matplotlib>=3.5", "av>=10"],
     # Comparison with OpenCV's trackers, in an environment of its own.
     "evaluate": ["opencv-contrib-python-headless>=4.6", *SCORING],
+    # Harnesses of the field, in an environment of its own: one brings another cv2 package.
+    "harnesses": [
+        "got10k>=0.1.3",
+        "vot-toolkit>=0.9,<0.10",
+        "vot-trax>=4,<5",
+        "attributee<0.1.10",  # vot-toolkit 0.9 breaks with newer ones on Python 3.11
+        *SCORING,
+    ],
     # Scoring on a Dask cluster.
     "cluster": ["distributed>=2023.1"],
     # colcon still needs `setup.py develop`, which setuptools 80 took away.

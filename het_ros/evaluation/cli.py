@@ -10,10 +10,11 @@ import os
 import sys
 from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
 from het_ros.evaluation import (
     evidence_tables,
-    opencv_peers,
+    other_boxes,
     pages,
     published,
     raw_boxes,
@@ -21,6 +22,7 @@ from het_ros.evaluation import (
     tables,
 )
 from het_ros.evaluation.cache import Cache
+from het_ros.evaluation.choice import chosen
 from het_ros.evaluation.compare import compare
 from het_ros.evaluation.drawing import colours
 from het_ros.evaluation.jobs import DIED, SourceChangedError
@@ -31,7 +33,7 @@ from het_ros.evaluation.runs import Plan, Run, carry_out_plan
 from het_ros.evaluation.strips import strips
 from het_ros.evaluation.summary import Scored, score_runs, summarise
 from het_ros.evaluation.timing import Timing, time_trackers
-from het_ros.evaluation.trackers import DEFAULT, TrackerSpec, split_names, tracker_spec
+from het_ros.evaluation.trackers import DEFAULT
 from het_ros.evaluation.video import write_videos
 
 EXAMPLE = """\
@@ -41,6 +43,8 @@ examples:
       --trackers het,het:sub_patches=5,small@het:small.yaml,csrt
   evaluate --compare out/before out/after
   evaluate --compare out/try:het out/try:small --out out/difference
+  evaluate --data ../shared/sequences --out out/peers --models ../shared/models --seeds 3
+  evaluate --data ../shared/sequences --out out/beside --boxes EFSCF=efscf/OTB100
 """
 
 
@@ -82,7 +86,13 @@ def parser() -> argparse.ArgumentParser:
         "--trackers",
         default="",
         help="comma-separated; het:field=value,... or name@het:file.yaml for a configuration "
-        f"(default: {','.join(DEFAULT)})",
+        f"(default: {','.join(DEFAULT)}, and those of --models)",
+    )
+    p.add_argument(
+        "--models",
+        type=Path,
+        help="folder with ONNX files of NanoTrack and VitTrack: adds nanotrack-v2, "
+        "nanotrack-v3, vit, vit-corrected",
     )
     p.add_argument("--seeds", type=_positive, default=1, help="seeds of random trackers (1)")
     p.add_argument("--protocol", choices=PROTOCOLS, default="ope", help="(ope)")
@@ -113,6 +123,14 @@ def parser() -> argparse.ArgumentParser:
         metavar="SEQUENCES",
         help="comma-separated; sequences of DATA that are not the published ones",
     )
+    p.add_argument(
+        "--boxes",
+        action="append",
+        default=[],
+        metavar="NAME=FOLDER",
+        help="boxes of another tracker, FOLDER/SEQUENCE.txt in OTB's text (x,y,w,h a line, "
+        "counted from 1), to be scored beside ours; may be given several times",
+    )
     p.add_argument("--video", action="store_true", help="one annotated MP4 a sequence")
     p.add_argument(
         "--into",
@@ -130,8 +148,11 @@ def parser() -> argparse.ArgumentParser:
 def evaluate(options: argparse.Namespace) -> int:
     """Plan, run, score and report."""
     names = tuple(name for name in options.sequences.split(",") if name)
+    choice = chosen(options.trackers, options.models)
+    for note in choice.notes:
+        print(f"evaluate: {note}", file=sys.stderr)
     plan = Plan(
-        trackers=_trackers(options.trackers),
+        trackers=choice.trackers,
         sequences=read_sequences(options.data, names, _rates(options.fps)),
         protocol=options.protocol,
         seeds=options.seeds,
@@ -139,6 +160,7 @@ def evaluate(options: argparse.Namespace) -> int:
     )
     if options.published:
         published.read(options.published)  # complain now, not after hours
+    others = _others(options, plan)
     cache = Cache(options.out / "cache")
     runs = carry_out_plan(plan, cache, options.jobs, options.scheduler, options.quiet)
     timing = Timing()
@@ -149,7 +171,11 @@ def evaluate(options: argparse.Namespace) -> int:
             plan.trackers, plan.sequences, options.timing, folder, dead, options.quiet
         )
     scored = score_runs(runs, plan.sequences)
-    results = summarise(plan, scored, timing) | {"data": str(options.data.resolve())}
+    results = summarise(plan, scored, timing) | {
+        "data": str(options.data.resolve()),
+        "notes": choice.notes,
+        "boxes": others,
+    }
     options.out.mkdir(parents=True, exist_ok=True)
     (options.out / "results.json").write_text(
         json.dumps(results, indent=1, allow_nan=False) + "\n"
@@ -159,6 +185,13 @@ def evaluate(options: argparse.Namespace) -> int:
     for file in _report(options, plan, runs, scored, results):
         print(file)
     return 0
+
+
+def _others(options: argparse.Namespace, plan: Plan) -> dict[str, Any]:
+    folders = other_boxes.named(options.boxes)
+    if folders and plan.protocol != "ope":
+        raise ValueError("--boxes goes with --protocol ope: boxes of one run from the first frame")
+    return other_boxes.scored(folders, plan.sequences, options.published_except.split(","))
 
 
 def _report(
@@ -178,6 +211,7 @@ def _report(
         comparison = published.compare(options.published, results, excluded)
     drawn = plots(results, palette)
     listed = tables.tables(results, comparison) + evidence_tables.tables(results)
+    listed += other_boxes.tables(results["boxes"], results)
     for page in options.into:
         pages.update(page, results, listed)
         yield page
@@ -187,22 +221,6 @@ def _report(
     if options.video:
         folder = options.out / "video"
         yield from write_videos(runs, plan.sequences, palette, folder, options.quiet)
-
-
-def _trackers(text: str) -> list[TrackerSpec]:
-    if text:
-        specs = [tracker_spec(name) for name in split_names(text)]
-        if len({spec.folder for spec in specs}) < len(specs):
-            raise ValueError(f"--trackers {text} names one twice: label one as label@het:...")
-        return specs
-    present = [n for n in DEFAULT if n.startswith("het") or n in opencv_peers.available()]
-    absent = [n for n in DEFAULT if n not in present]
-    if absent:
-        print(
-            f"evaluate: left out, for they need opencv-contrib: {', '.join(absent)}",
-            file=sys.stderr,
-        )
-    return [tracker_spec(name) for name in present]
 
 
 def _rates(text: str) -> dict[str, float]:

@@ -15,7 +15,8 @@ from numpy.typing import NDArray
 from het_ros.evaluation.answers import Answer
 from het_ros.tracking.box import Box
 
-ADAPTER = 1  # count up when a change here may change results: cached ones are then run again
+OpenCvObject = Any  # OpenCV's trackers share no class in Python
+ADAPTER = 2  # count up when a change here may change results: cached ones are then run again
 
 
 @dataclass(frozen=True)
@@ -26,7 +27,8 @@ class Peer:
         factory: its function's name.
         random: whether two runs differ. OpenCV seeds these from elsewhere than its own
             generator, so a seed stands for a repetition and cannot be called back.
-        whole: whether it takes boxes of whole pixels only (the API since OpenCV 4.5.1).
+        whole: whether it takes boxes of whole pixels only: all of the API since OpenCV 4.5.1,
+            and Boosting, whose process a box of fractions may take down.
     """
 
     factory: str
@@ -46,7 +48,7 @@ PEERS = {
     "csrt": Peer("TrackerCSRT_create", random=False, whole=True),
     "kcf": Peer("TrackerKCF_create", random=False, whole=True),
     "mil": Peer("TrackerMIL_create", random=True, whole=True),
-    "boosting": Peer("legacy.TrackerBoosting_create", random=False, whole=False),
+    "boosting": Peer("legacy.TrackerBoosting_create", random=False, whole=True),
     "tld": Peer("legacy.TrackerTLD_create", random=True, whole=False),
     "medianflow": Peer("legacy.TrackerMedianFlow_create", random=False, whole=False),
     "mosse": Peer("legacy.TrackerMOSSE_create", random=False, whole=False),
@@ -104,3 +106,27 @@ class OpenCvTracker:
             return Answer(None, "LOST")
         x, y, w, h = (float(value) for value in box)
         return Answer((x, y, w, h), "TRACKING")
+
+
+class ScoringTracker:
+    """One of OpenCV's trackers that says how sure it is, 0..1.
+
+    Where it says that the target was not found, the state is LOST and the box before is kept.
+    """
+
+    def __init__(self, create: Callable[[], OpenCvObject], seed: int = 0) -> None:
+        self._create = create
+
+    def init(self, image: NDArray[np.uint8], box: Box) -> None:
+        """Start on a box, rounded to whole px."""
+        self._tracker = self._create()
+        self._tracker.init(np.ascontiguousarray(image), [round(v) for v in box.as_tuple()])
+
+    def update(self, image: NDArray[np.uint8], dt: float) -> Answer:
+        """Follow into the next image; ``dt`` is of no use to these."""
+        found, box = self._tracker.update(image)
+        score = min(max(float(self._tracker.getTrackingScore()), 0.0), 1.0)
+        if not found:
+            return Answer(None, "LOST", score)
+        x, y, w, h = (float(value) for value in box)
+        return Answer((x, y, w, h), "TRACKING", score)

@@ -25,7 +25,7 @@ def write_markdown(
     (out / "plots").mkdir(parents=True, exist_ok=True)
     for name, png in plots.items():
         (out / "plots" / f"{name}.png").write_bytes(png)
-    parts = [f"# {title(results)}", origin(results)]
+    parts = [f"# {title(results)}", origin(results), *results.get("notes", [])]
     pictures = " ".join(f"![{name}](plots/{name}.png)" for name in plots)
     for number, table in enumerate(tables):
         parts += [f"## {table.title}", table.markdown()]
@@ -53,6 +53,7 @@ def write_html(
     page = environment.get_template("report.html.j2").render(
         title=title(results),
         origin=origin(results),
+        notes=results.get("notes", []),
         tables=tables,
         plots={name: _data_uri(png, "png") for name, png in plots.items()},
         strips={name: _data_uri(jpeg, "jpeg") for name, jpeg in strips.items()},

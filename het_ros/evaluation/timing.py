@@ -1,12 +1,11 @@
 # Copyright 2026 het_ros maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""How fast trackers are: alone on the machine, on one thread, side by side on the same frames."""
+"""How fast trackers are: alone on the machine, on one thread, taking turns on the same frames."""
 
 from __future__ import annotations
 
 import json
 import os
-import time
 from collections.abc import Collection, Mapping
 from collections.abc import Sequence as Listing
 from dataclasses import dataclass, field
@@ -17,9 +16,9 @@ from numpy.typing import NDArray
 from tqdm import tqdm
 
 from het_ros.evaluation.cache import key_of
-from het_ros.evaluation.jobs import one_thread
 from het_ros.evaluation.sequences import Frames, Sequence
-from het_ros.evaluation.trackers import Tracker, TrackerSpec
+from het_ros.evaluation.trackers import TrackerSpec
+from het_ros.evaluation.turns import Player, players
 from het_ros.tracking.box import Box
 
 BLOCK = 10  # frames that a tracker gets in a row, with its caches warm
@@ -52,15 +51,19 @@ def time_trackers(
     """Time the first ``frames`` updates of every tracker on every sequence.
 
     All trackers of a comparison are timed together or not at all: what is kept in ``folder`` is
-    kept for the whole list of trackers, so that no ratio compares two days. Pairs (tracker,
-    sequence) in ``skipped`` are not run: those whose process died when they were scored.
+    kept for the whole list of trackers, so that no ratio compares two days. Each tracker runs in
+    a process of its own; one that dies takes no other along, and is started again for the next
+    sequence. Pairs (tracker, sequence) in ``skipped`` are not run: those whose process died when
+    they were scored.
     """
     folder.mkdir(parents=True, exist_ok=True)
     seconds, load = {}, 0.0
     comparison = [tracker.fingerprint for tracker in trackers]
-    with tqdm(sequences, unit="sequence", desc="timing", disable=quiet) as bar:
+    bar = tqdm(sequences, unit="sequence", desc="timing", disable=quiet)
+    with players(list(trackers)) as processes, bar:
         for sequence in bar:
-            taken = [t if (t.name, sequence.name) not in skipped else None for t in trackers]
+            pairs = zip(trackers, processes, strict=True)
+            taken = [p if (t.name, sequence.name) not in skipped else None for t, p in pairs]
             key = key_of(comparison, sequence.frames.fingerprint(), frames)
             file = folder / f"{sequence.name}_{key}.json"
             if not file.is_file():
@@ -76,49 +79,25 @@ def time_trackers(
 
 
 def _interleaved(
-    trackers: Listing[TrackerSpec | None], frames: Frames, box: Box
+    trackers: Listing[Player | None], frames: Frames, box: Box
 ) -> list[NDArray[np.float64]]:
     """Blocks of frames in turn: each tracker does one block, then the next tracker does it.
 
     Returns:
         For each tracker the times of ``update``, s; NaN from where it failed.
     """
-    images = [frames[row] for row in range(len(frames))]
-    times = [np.full(len(images) - 1, np.nan) for _ in trackers]
-    with one_thread():
-        built = [_started(spec, images[0], box) for spec in trackers]
-        for first in range(1, len(images), BLOCK):
-            block = range(first, min(first + BLOCK, len(images)))
-            for k, tracker in enumerate(built):
-                if tracker and not _timed(tracker, images, block, frames.dt, times[k]):
-                    built[k] = None
+    times = [np.full(len(frames) - 1, np.nan) for _ in trackers]
+    # One after the other: a network that is read takes the processor from what is timed.
+    following = [
+        tracker if tracker and tracker.start(frames, box) else None for tracker in trackers
+    ]
+    for first in range(1, len(frames), BLOCK):
+        block = range(first, min(first + BLOCK, len(frames)))
+        for k, tracker in enumerate(following):
+            if tracker is None:
+                continue
+            took = tracker.times(block)
+            times[k][first - 1 : first - 1 + len(took)] = took
+            if len(took) < len(block):
+                following[k] = None
     return times
-
-
-def _timed(
-    tracker: Tracker,
-    images: list[NDArray[np.uint8]],
-    block: range,
-    dt: float,
-    times: NDArray[np.float64],
-) -> bool:
-    """Time the updates of one block into ``times``; False when the tracker raised."""
-    for row in block:
-        begun = time.perf_counter()
-        try:
-            tracker.update(images[row], dt)
-        except Exception:  # the scored runs record what it died of
-            return False
-        times[row - 1] = time.perf_counter() - begun
-    return True
-
-
-def _started(spec: TrackerSpec | None, image: NDArray[np.uint8], box: Box) -> Tracker | None:
-    if spec is None:
-        return None
-    try:
-        tracker = spec.build(0)
-        tracker.init(image, box)
-    except Exception:  # the scored runs record what it died of
-        return None
-    return tracker

@@ -12,14 +12,14 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cache, partial
 from pathlib import Path
-from typing import Any, Protocol
+from typing import Any, Protocol, cast
 
 import cv2
 import numpy as np
 from numpy.typing import NDArray
 
 import het_ros.tracking
-from het_ros.evaluation import opencv_peers
+from het_ros.evaluation import network_peers, opencv_peers
 from het_ros.evaluation.answers import HORIZONS, Answer
 from het_ros.tracking.box import Box
 from het_ros.tracking.config import TrackerConfig
@@ -149,12 +149,13 @@ def split_names(text: str) -> list[str]:
     return names
 
 
-def tracker_spec(name: str) -> TrackerSpec:
+def tracker_spec(name: str, models: Path | None = None) -> TrackerSpec:
     """The tracker called ``name``.
 
-    Names: ``het``, ``het-paper``, ``identity``, a peer of OpenCV (``csrt``...), or a base with
-    changes: ``het:sub_patches=5,seed=3`` or ``het:file.yaml`` (also JSON; a mapping of fields,
-    or a ROS parameter file). ``label@het:...`` calls it ``label`` in the tables.
+    Names: ``het``, ``het-paper``, ``identity``, a peer of OpenCV (``csrt``...), a network
+    (``nanotrack-v3``...; its files are looked for in ``models``), or a base with changes:
+    ``het:sub_patches=5,seed=3`` or ``het:file.yaml`` (also JSON; a mapping of fields, or a ROS
+    parameter file). ``label@het:...`` calls it ``label`` in the tables.
 
     Raises:
         ValueError: there is no such tracker, field or file, or a value is out of its range.
@@ -177,7 +178,14 @@ def tracker_spec(name: str) -> TrackerSpec:
         build = partial(opencv_peers.OpenCvTracker, base)
         fingerprint = _hash(f"{base} {opencv_peers.version()}")
         return TrackerSpec(label or name, build, fingerprint, random=peer.random)
-    known = ", ".join((*DEFAULT, "identity"))
+    if base in network_peers.NAMES:
+        return TrackerSpec(
+            label or name,
+            cast("Callable[[int], Tracker]", network_peers.builder(base, models)),
+            network_peers.fingerprint(base, models),
+            random=False,
+        )
+    known = ", ".join((*DEFAULT, *network_peers.NAMES, "identity"))
     raise ValueError(f"no tracker is called {base!r}; there are {known}")
 
 

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from het_ros.evaluation import cli, raw_boxes
+from het_ros.evaluation.choice import Choice, chosen
 from het_ros.evaluation.opencv_peers import available
 
 from .doubles import write_sequence
@@ -127,21 +128,43 @@ def test_every_protocol_runs_and_reports(folder, protocol, variants):
         (["--trackers", "het:colour=1"], "TrackerConfig has no colour"),
         (["--trackers", "het,het"], "names one twice"),
         (["--sequences", "none"], "has no none; it has gone, walk"),
+        (["--boxes", "name"], "--boxes takes NAME=folder"),
+        (["--protocol", "tre", "--boxes", "a=data/walk"], "--protocol ope"),
+        (["--trackers", "vit"], "needs a folder of models, --models FOLDER"),
         (["--fps", "fast"], "--fps takes"),
         (["--cameras", "fast"], "--cameras takes"),
         (["--trackers", "identity", "--published", "absent.json"], "no published figures"),
     ],
 )
-def test_a_wrong_wish_is_answered_with_what_would_be_right(folder, options, complaint, capsys):
+def test_a_wrong_wish_is_answered_with_what_would_be_right(
+    folder, options, complaint, capsys, monkeypatch
+):
+    monkeypatch.chdir(folder)
     assert run(folder, *options) == 2
     assert complaint in capsys.readouterr().err
 
 
-def test_without_trackers_named_those_that_are_here_are_compared(capsys):
-    names = [spec.name for spec in cli._trackers("")]
+def test_without_trackers_named_those_that_are_here_are_compared():
+    choice = chosen("")
+    names = [spec.name for spec in choice.trackers]
     assert names == ["het", "het-paper", *available()]
-    left_out = capsys.readouterr().err
-    assert ("opencv-contrib" in left_out) == (len(available()) < 7)
+    assert ("opencv-contrib" in " ".join(choice.notes)) == (len(available()) < 7)
+
+
+def test_what_is_left_out_and_boxes_of_others_are_in_the_report(folder, monkeypatch, capsys):
+    still = chosen("identity").trackers
+    monkeypatch.setattr(cli, "chosen", lambda text, models: Choice(still, ["Left out: a net."]))
+    boxes = folder / "boxes"
+    boxes.mkdir()
+    truth = (folder / "data" / "walk" / "groundtruth_rect.txt").read_text()
+    (boxes / "walk.txt").write_text(truth)
+    assert run(folder, "--timing", "0", "--boxes", f"perfect={boxes}") == 0
+    assert "Left out: a net." in capsys.readouterr().err
+    assert results(folder)["boxes"]["perfect"]["auc"] == pytest.approx(20 / 21)
+    for file in ("report.md", "report.html"):
+        text = (folder / "out" / file).read_text()
+        assert "Left out: a net." in text
+        assert "Boxes of others beside ours" in text
 
 
 def test_help_has_an_example(capsys):
