@@ -27,6 +27,7 @@ from het_ros.evaluation.summary import machine
 from het_ros.tools.arguments import INTERRUPTED, command
 from het_ros.tools.tracker_process import TrackerProcessError
 from het_ros.tracking.config import TrackerConfig
+from het_ros.tracking.paper.config import PaperConfig
 
 PARTS = ("core", "stages", "scaling", "node", "start")
 EXAMPLE = """\
@@ -120,7 +121,7 @@ def measured(options: argparse.Namespace) -> dict[str, Any]:
 def _stages(frames: int) -> dict[str, dict[str, float]]:
     footage = Footage(640, 480)
     box = middle(footage, TARGET_IN_IMAGES)
-    configs = {OURS: TrackerConfig(), PAPER: TrackerConfig.paper()}
+    configs = {OURS: TrackerConfig(), PAPER: PaperConfig()}
     return {name: stage_times(config, footage, box, frames) for name, config in configs.items()}
 
 

@@ -15,7 +15,9 @@ from dataclasses import dataclass
 import cv2
 import numpy as np
 
+from het_ros.tracking.bottom.sub_patches import draw_layout
 from het_ros.tracking.config import TrackerConfig
+from het_ros.tracking.features.extractor import WindowConfig, target_cells
 
 
 @dataclass(frozen=True)
@@ -40,21 +42,18 @@ class Sizes:
 
 
 def sizes_of(config: TrackerConfig) -> Sizes:
-    """The sizes for a square target at a working resolution.
-
-    Raises:
-        ValueError: the configuration has no working resolution, so they depend on the target.
-    """
-    if not config.working_side:
-        raise ValueError("without working_side the window is as large as the target wants")
-    target = max(4, round(config.working_side / config.cell))
-    side = target + 2 * int(np.ceil(config.search_radius / config.cell))
-    places = side - round(config.sub_patch_fraction * target) + 1
+    """The sizes for a square target."""
+    window = WindowConfig()
+    target = target_cells((1.0, 1.0), config.working_side)
+    rng = np.random.default_rng(config.seed)
+    patch = draw_layout(target, config.sub_patches, config.sub_patch_fraction, rng).size
+    side = target[0] + 2 * window.margin_of(config.search_radius)
+    places = side - patch[0] + 1
     return Sizes(
-        window=(side * config.cell, side * config.cell),
+        window=(side * window.cell, side * window.cell),
         cells=(side, side),
         places=places**2,
-        channels=len(config.channels),
+        channels=len(window.channels),
         features=config.features,
         sub_patches=config.sub_patches,
     )

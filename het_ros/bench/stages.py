@@ -12,58 +12,64 @@ from contextlib import contextmanager
 from typing import Any
 
 from het_ros.bench.footage import Footage
-from het_ros.tracking import appearance, combination, flow_prior, view
-from het_ros.tracking.angle_filter import AngleFilter
-from het_ros.tracking.base_ensembles import NaiveBayes
+from het_ros.evaluation.trackers import Config, tracker_of
+from het_ros.tracking.bottom.colour import ColourEnsemble
+from het_ros.tracking.bottom.flow import FlowEnsemble
+from het_ros.tracking.bottom.network import NetworkEnsemble
+from het_ros.tracking.bottom.sub_patches import SubPatchEnsembles
 from het_ros.tracking.box import Box
-from het_ros.tracking.camera import CameraMotion
-from het_ros.tracking.centring import Centring
-from het_ros.tracking.colour import ColourModel
-from het_ros.tracking.compressive import CompressiveFeatures
-from het_ros.tracking.config import TrackerConfig
-from het_ros.tracking.first_look import FirstLook
-from het_ros.tracking.motion import AdaptiveKalman
-from het_ros.tracking.ridge import RidgeEnsembles
-from het_ros.tracking.scenery import Scenery
-from het_ros.tracking.size import Size
-from het_ros.tracking.template import TemplateWriter
-from het_ros.tracking.tracker import HierarchicalEnsembleTracker
+from het_ros.tracking.features import extractor
+from het_ros.tracking.features.compressive import CompressiveFeatures
+from het_ros.tracking.middle.size import Size
+from het_ros.tracking.paper import appearance
+from het_ros.tracking.paper import target as paper
+from het_ros.tracking.paper.kalman import AdaptiveKalman as PaperKalman
+from het_ros.tracking.top.background import Background
+from het_ros.tracking.top.confidence import Confidence
+from het_ros.tracking.top.ego_motion import EgoMotion
+from het_ros.tracking.top.kalman import AdaptiveKalman
+from het_ros.tracking.top.redetection import Redetection
 
 # Stage, where its function lives, the function's name. None of them calls another of them.
 _PLACES: tuple[tuple[str, Any, str], ...] = (
-    ("camera", CameraMotion, "follow"),
-    ("window", view, "cut_window"),
-    ("channels", view, "channel_stack"),
-    ("integrals", view, "integral_images"),
+    ("ego-motion", EgoMotion, "follow"),
+    ("re-detection", Redetection, "next_place"),
+    *(
+        (stage, place, name)
+        for place in (extractor, appearance)
+        for stage, name in (
+            ("window", "cut_window"),
+            ("channels", "channel_stack"),
+            ("integrals", "integral_images"),
+        )
+    ),
     ("feature maps", CompressiveFeatures, "maps"),
-    ("scores", RidgeEnsembles, "score_maps"),
-    ("scores", NaiveBayes, "score_maps"),
-    ("colour", ColourModel, "likelihood"),
-    ("colour", appearance, "cell_means"),
-    ("colour", appearance, "box_means"),
-    ("colour", ColourModel, "learn"),
-    ("flow", flow_prior, "trace"),
-    ("peak", appearance, "find_peak"),
-    ("peak", appearance, "detect"),
-    ("peak", combination, "weights"),
-    ("peak", combination, "hypotheses"),
-    ("peak", combination, "combine"),
-    ("first look", FirstLook, "correction"),
-    ("scenery", Scenery, "shows"),
-    ("scenery", Scenery, "remember"),
-    ("centring", Centring, "observe"),
-    ("rotation", AngleFilter, "spectrum"),
-    ("rotation", AngleFilter, "turn"),
-    ("rotation", AngleFilter, "learn"),
-    ("learn", RidgeEnsembles, "learn"),
-    ("learn", NaiveBayes, "learn"),
-    ("learn", NaiveBayes, "likelihood"),
-    ("scale", TemplateWriter, "write"),
-    ("scale", Size, "follow"),
-    ("scale", Size, "learn"),
-    ("kalman", AdaptiveKalman, "predict"),
-    ("kalman", AdaptiveKalman, "correct"),
-    ("kalman", AdaptiveKalman, "coast"),
+    ("votes", SubPatchEnsembles, "vote"),
+    ("votes", paper, "score_maps"),
+    ("votes", paper, "detect"),
+    ("votes", paper, "combine"),
+    ("votes", paper, "mean_probability"),
+    ("colour", ColourEnsemble, "vote"),
+    ("colour", ColourEnsemble, "learn"),
+    ("flow", FlowEnsemble, "vote"),
+    ("flow", FlowEnsemble, "learn"),
+    ("network", NetworkEnsemble, "propose"),
+    ("background", Background, "shows"),
+    ("background", Background, "remember"),
+    ("confidence", Confidence, "judge"),
+    ("size", Size, "follow"),
+    ("size", Size, "learn"),
+    ("learn", SubPatchEnsembles, "learn"),
+    ("learn", paper, "class_gaussians"),
+    ("learn", paper, "updated"),
+    *(
+        ("kalman", place, name)
+        for place, names in (
+            (AdaptiveKalman, ("predict", "correct", "coast")),
+            (PaperKalman, ("predict", "adapt", "correct")),
+        )
+        for name in names
+    ),
 )
 STAGES: tuple[str, ...] = tuple(dict.fromkeys(stage for stage, _, _ in _PLACES))
 
@@ -95,10 +101,10 @@ def _timed(function: Callable[..., Any], stage: str, spent: Counter[str]) -> Cal
 
 
 def stage_times(
-    config: TrackerConfig, footage: Footage, box: Box, frames: int, warm_up: int = 5
+    config: Config, footage: Footage, box: Box, frames: int, warm_up: int = 5
 ) -> dict[str, float]:
     """Mean time of each stage in a frame, ms; "rest" is what lies between them."""
-    tracker = HierarchicalEnsembleTracker(config)
+    tracker = tracker_of(config)
     tracker.init(footage[0], box)
     with timed_stages() as spent:
         total = 0.0

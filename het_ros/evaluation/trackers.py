@@ -24,6 +24,8 @@ from het_ros.evaluation.answers import HORIZONS, Answer
 from het_ros.tracking.box import Box
 from het_ros.tracking.config import TrackerConfig
 from het_ros.tracking.estimate import Estimate
+from het_ros.tracking.paper.config import PaperConfig
+from het_ros.tracking.paper.tracker import PaperTracker
 from het_ros.tracking.parameter import Parameter, parameters_of
 from het_ros.tracking.tracker import HierarchicalEnsembleTracker
 
@@ -67,11 +69,21 @@ def folder_name(tracker: str) -> str:
     return re.sub(r"[^\w.=+-]+", "_", tracker)
 
 
-class Het:
-    """The Hierarchical Ensemble Tracker."""
+Config = TrackerConfig | PaperConfig
 
-    def __init__(self, config: TrackerConfig) -> None:
-        self._tracker = HierarchicalEnsembleTracker(config)
+
+def tracker_of(config: Config) -> HierarchicalEnsembleTracker | PaperTracker:
+    """The tracker that a configuration is of."""
+    if isinstance(config, PaperConfig):
+        return PaperTracker(config)
+    return HierarchicalEnsembleTracker(config)
+
+
+class Het:
+    """The Hierarchical Ensemble Tracker, the default or the paper's."""
+
+    def __init__(self, config: Config) -> None:
+        self._tracker = tracker_of(config)
 
     def init(self, image: NDArray[np.uint8], box: Box) -> None:
         """Start on a box."""
@@ -112,7 +124,7 @@ class Identity:
         return Answer(self._box)
 
 
-def seeded_het(config: TrackerConfig, seed: int) -> Het:
+def seeded_het(config: Config, seed: int) -> Het:
     """Het with the configuration's seed moved on by ``seed``."""
     return Het(dataclasses.replace(config, seed=config.seed + seed))
 
@@ -127,10 +139,7 @@ def tracking_source() -> str:
     return digest.hexdigest()[:16]
 
 
-BASES: dict[str, Callable[[], TrackerConfig]] = {
-    "het": TrackerConfig,
-    "het-paper": TrackerConfig.paper,
-}
+BASES: dict[str, type[Config]] = {"het": TrackerConfig, "het-paper": PaperConfig}
 DEFAULT = ("het", "het-paper", *opencv_peers.PEERS)
 
 
@@ -197,10 +206,10 @@ def _hash(text: str) -> str:
     return hashlib.sha256(text.encode()).hexdigest()[:16]
 
 
-def _changed(config: TrackerConfig, changes: str) -> TrackerConfig:
+def _changed(config: Config, changes: str) -> Config:
     if not changes:
         return config
-    table = {p.name: p for p in parameters_of(TrackerConfig)}
+    table = {p.name: p for p in parameters_of(type(config))}
     if Path(changes).suffix in {".yaml", ".yml", ".json"}:
         values = _read_file(Path(changes))
     else:
@@ -208,7 +217,8 @@ def _changed(config: TrackerConfig, changes: str) -> TrackerConfig:
         values = {key.strip(): text.strip() for key, _, text in pairs}
     unknown = [key for key in values if key not in table]
     if unknown:
-        raise ValueError(f"TrackerConfig has no {', '.join(unknown)}; it has {', '.join(table)}")
+        kind = type(config).__name__
+        raise ValueError(f"{kind} has no {', '.join(unknown)}; it has {', '.join(table)}")
     return dataclasses.replace(
         config, **{key: parsed(table[key], value) for key, value in values.items()}
     )

@@ -37,6 +37,12 @@ class NodeConfig:
         choices=("raw", "compressed"),
         read_only=True,
     )
+    tracker: str = parameter(
+        "het",
+        "het, or paper: the paper's tracker with the paper's constants, of the tracker's "
+        "parameters only `seed`; with the next box",
+        choices=("het", "paper"),
+    )
     white_level: int = parameter(
         65535,
         "value of a 16-bit image that counts as white; 4095 for a 12-bit camera",

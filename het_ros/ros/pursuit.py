@@ -29,7 +29,7 @@ from het_ros.ros.stamps import Order, StampGate
 from het_ros.tracking.box import Box
 from het_ros.tracking.config import TrackerConfig
 from het_ros.tracking.estimate import Estimate, State
-from het_ros.tracking.target import Witness
+from het_ros.tracking.tracker import Witness
 
 FrameWitness = Callable[[Box, tuple[int, int], Header, int], bool]
 
@@ -59,7 +59,7 @@ class Pursuit:
         logger: Any,
         witness: FrameWitness | None = None,
     ) -> None:
-        self.session = TrackingSession(config, settings.max_gap)
+        self.session = TrackingSession(config, settings.max_gap, settings.tracker)
         self.counts: Counter[str] = Counter()
         self.track = 0
         self.settings = settings
@@ -83,6 +83,7 @@ class Pursuit:
         """Take new parameters: the node's at once, the tracker's with the next box."""
         self.settings = settings
         self.session.config, self.session.max_gap = config, settings.max_gap
+        self.session.tracker = settings.tracker
         self._gate.jump_back = settings.jump_back
         self._ring.seconds, self._ring.megabytes = settings.ring_seconds, settings.ring_megabytes
 

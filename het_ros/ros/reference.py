@@ -2,8 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Writes what is generated from the parameter tables: ``python -m het_ros.ros.reference``.
 
-That is ``config/tracker.yaml``, ``docs/PARAMETERS.md``, and the README's table between the lines
-``<!-- parameters -->`` and ``<!-- /parameters -->``. A test fails when one of them is stale.
+That is ``config/tracker.yaml`` and ``docs/PARAMETERS.md``. A test fails when one is stale.
 """
 
 from __future__ import annotations
@@ -17,7 +16,6 @@ from het_ros.ros.parameters import NodeConfig
 from het_ros.tracking.config import TrackerConfig
 from het_ros.tracking.parameter import Parameter, Value, parameters_of
 
-BEGIN, END = "<!-- parameters -->", "<!-- /parameters -->"
 PAGE = """\
 # Parameters
 
@@ -79,15 +77,6 @@ def parameters_file() -> str:
     return "\n".join(lines) + "\n"
 
 
-def with_table(text: str) -> str:
-    """A text with the tracker's table between the marks, or as it is where it has none."""
-    if BEGIN not in text or END not in text:
-        return text
-    before, rest = text.split(BEGIN, 1)
-    after = rest.split(END, 1)[1]
-    return f"{before}{BEGIN}\n{parameter_table(TrackerConfig)}\n{END}{after}"
-
-
 def _as_text(value: Value) -> str:
     """A value in YAML, on one line."""
     plain = list(value) if isinstance(value, tuple) else value
@@ -116,9 +105,6 @@ def main(arguments: list[str] | None = None) -> int:
     (checkout / "docs").mkdir(exist_ok=True)
     (checkout / "docs" / "PARAMETERS.md").write_text(parameters_page())
     (checkout / "config" / "tracker.yaml").write_text(parameters_file())
-    readme = checkout / "README.md"
-    if readme.exists():
-        readme.write_text(with_table(readme.read_text()))
     return 0
 
 

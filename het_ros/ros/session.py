@@ -4,6 +4,8 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import cv2
 import numpy as np
 from numpy.typing import NDArray
@@ -12,8 +14,10 @@ from het_ros.ros.stamps import SECOND
 from het_ros.tracking.box import Box
 from het_ros.tracking.config import TrackerConfig
 from het_ros.tracking.estimate import Estimate, State
-from het_ros.tracking.target import Witness
-from het_ros.tracking.tracker import HierarchicalEnsembleTracker
+from het_ros.tracking.tracker import HierarchicalEnsembleTracker, Witness
+
+if TYPE_CHECKING:
+    from het_ros.tracking.paper.tracker import PaperTracker
 
 Pixels = NDArray[np.uint8]
 LARGEST_BOX = 2.0  # sides of the image: a larger box is a slip of units, and costs memory
@@ -25,19 +29,25 @@ class TrackingSession:
     A new box makes a new tracker and replaces the old one only once it has started, so a box
     that is refused leaves the running track as it was.
 
+    Args:
+        config: parameters of the default tracker.
+        max_gap: s without an image that end a track.
+        tracker: "het", or "paper" for the paper's with its own constants.
+
     Attributes:
         state: of the track; IDLE or LOST without one.
         reason: why the state is not TRACKING, in words; empty while it is.
         age: s since the target was last measured.
     """
 
-    def __init__(self, config: TrackerConfig, max_gap: float) -> None:
+    def __init__(self, config: TrackerConfig, max_gap: float, tracker: str = "het") -> None:
         self.config = config
         self.max_gap = max_gap
+        self.tracker = tracker
         self.state = State.IDLE
         self.reason = "waiting for a box"
         self.age = 0.0
-        self._tracker: HierarchicalEnsembleTracker | None = None
+        self._tracker: HierarchicalEnsembleTracker | PaperTracker | None = None
         self._shape: tuple[int, ...] = ()
         self._source = ""
         self._stamp = 0
@@ -62,7 +72,7 @@ class TrackingSession:
             )
         if not box.touches_image(width, height):
             raise ValueError(f"{box} lies wholly outside the image of {width} x {height} px")
-        tracker = HierarchicalEnsembleTracker(self.config)
+        tracker = new_tracker(self.tracker, self.config)
         estimate = _finite(tracker.init(image, box))
         self._tracker, self._shape, self._source = tracker, image.shape, source
         self._stamp = self._seen = stamp
@@ -123,6 +133,18 @@ class TrackingSession:
         self.state = estimate.state
         self.age = (self._stamp - self._seen) / SECOND
         self.reason = "" if self.state is State.TRACKING else f"not seen for {self.age:.2f} s"
+
+
+def new_tracker(
+    name: str, config: TrackerConfig
+) -> HierarchicalEnsembleTracker | PaperTracker:
+    """The tracker of a name, "het" or "paper"; of the parameters the paper's takes the seed."""
+    if name == "het":
+        return HierarchicalEnsembleTracker(config)
+    from het_ros.tracking.paper.config import PaperConfig
+    from het_ros.tracking.paper.tracker import PaperTracker
+
+    return PaperTracker(PaperConfig(seed=config.seed))
 
 
 def _finite(estimate: Estimate) -> Estimate:

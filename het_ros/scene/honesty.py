@@ -13,7 +13,7 @@ from het_ros.scene.scene import Frame, Scene
 from het_ros.tracking.box import Box
 from het_ros.tracking.config import TrackerConfig
 from het_ros.tracking.estimate import Estimate, State
-from het_ros.tracking.gray import gray_of
+from het_ros.tracking.features.channels import gray_of
 from het_ros.tracking.tracker import HierarchicalEnsembleTracker
 
 CONFIDENT = 0.5  # a score above is trusted

@@ -4,8 +4,6 @@
 
 from __future__ import annotations
 
-import math
-
 from het_ros.tracking.config import TrackerConfig
 from het_ros.tracking.features.extractor import WindowConfig
 
@@ -33,8 +31,9 @@ def megabytes(config: TrackerConfig, cells: tuple[float, float]) -> float:
         config: parameters.
         cells: (w, h) of the target in cells of the search window.
     """
-    cell, channels = WindowConfig().cell, 10
-    margin = 2 * (math.ceil(config.search_radius / cell) + 1)
+    window = WindowConfig()
+    cell, channels = window.cell, len(window.channels)
+    margin = 2 * window.margin_of(config.search_radius)
     places = (cells[0] + margin) * (cells[1] + margin)
     place = 12 * config.features + 16 * config.sub_patches + 16 * channels + 16 * cell**2
     return (places * place + 32 * config.features**2) / 1e6

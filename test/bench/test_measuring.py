@@ -16,10 +16,13 @@ from het_ros.bench.imports import weigh_imports
 from het_ros.bench.process import usage
 from het_ros.bench.scaling import Case, scaling
 from het_ros.bench.stages import STAGES, stage_times, timed_stages
-from het_ros.tracking import view
+from het_ros.tracking.bottom.sub_patches import draw_layout
 from het_ros.tracking.box import Box
 from het_ros.tracking.config import TrackerConfig
-from het_ros.tracking.motion import AdaptiveKalman
+from het_ros.tracking.features import extractor
+from het_ros.tracking.features.extractor import FeatureExtractor, target_cells
+from het_ros.tracking.paper.config import PaperConfig
+from het_ros.tracking.top.kalman import AdaptiveKalman
 from het_ros.tracking.tracker import HierarchicalEnsembleTracker
 
 SMALL = replace(TrackerConfig(), features=20, sub_patches=3)
@@ -53,23 +56,21 @@ def test_the_tracker_follows_the_footage(footage):
         assert estimate.box.iou(shifted) > 0.7
 
 
-def test_sizes_of_the_floor_are_those_of_the_tracker(footage, monkeypatch):
-    seen = {}
-    whole = view.View.look
-
-    def look(self, *args, **kwargs):
-        frame = whole(self, *args, **kwargs)
-        seen["window"] = frame.window.pixels.shape[:2]
-        seen["cells"] = frame.planes[0].shape
-        seen["places"] = frame.features.shape[1] * frame.features.shape[2]
-        seen["channels"] = len(frame.planes)
-        return frame
-
-    monkeypatch.setattr(view.View, "look", look)
-    config = TrackerConfig()
-    HierarchicalEnsembleTracker(config).init(footage[0], middle(footage, (40, 40)))
+def test_sizes_of_the_floor_are_those_of_the_tracker(footage):
+    config, image = TrackerConfig(), footage[0]
+    cells = target_cells((40.0, 40.0), config.working_side)
+    rng = np.random.default_rng(0)
+    patch = draw_layout(cells, config.sub_patches, config.sub_patch_fraction, rng).size
+    extractor = FeatureExtractor(
+        image, cells, patch, config.features, config.search_radius, config.gray_below, rng
+    )
+    frame = extractor.look(image, np.array([80.0, 60.0]), np.array([40.0, 40.0]))
     sizes = sizes_of(config)
-    assert seen == {name: getattr(sizes, name) for name in seen}
+    assert frame.window.pixels.shape[:2] == sizes.window
+    assert frame.channels[0].shape == sizes.cells
+    assert len(frame.channels) == sizes.channels
+    assert frame.features.shape == (config.features, *frame.features.shape[1:])
+    assert frame.features[0].size == sizes.places
 
 
 def test_floor_is_the_sum_of_its_passes():
@@ -81,18 +82,16 @@ def test_floor_is_the_sum_of_its_passes():
     assert min(parts) > 0
 
 
-def test_there_is_no_floor_without_a_working_resolution():
-    with pytest.raises(ValueError, match="working_side"):
-        sizes_of(TrackerConfig.paper())
-
-
 @pytest.mark.parametrize(
     ("config", "idle"),
     [
-        (SMALL, set()),
+        (SMALL, {"network"}),
         (
-            TrackerConfig.paper(),
-            {"camera", "centring", "colour", "first look", "flow", "rotation", "scenery"},
+            PaperConfig(features=20, sub_patches=3),
+            {
+                *("ego-motion", "re-detection", "colour", "flow"),
+                *("network", "background", "confidence", "size"),
+            },
         ),
     ],
 )
@@ -104,10 +103,10 @@ def test_every_stage_that_a_configuration_has_takes_time(config, idle, footage):
 
 
 def test_timed_stages_leaves_everything_as_it_was():
-    before = view.cut_window, AdaptiveKalman.predict
+    before = extractor.cut_window, AdaptiveKalman.predict
     with pytest.raises(KeyError), timed_stages():
         raise KeyError
-    assert (view.cut_window, AdaptiveKalman.predict) == before
+    assert (extractor.cut_window, AdaptiveKalman.predict) == before
 
 
 def test_scaling_times_every_case(footage):

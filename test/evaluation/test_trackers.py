@@ -1,6 +1,5 @@
 # Copyright 2026 het_ros maintainers
 # SPDX-License-Identifier: Apache-2.0
-import dataclasses
 import json
 import pickle
 
@@ -11,6 +10,7 @@ from het_ros import Box, TrackerConfig
 from het_ros.evaluation import opencv_peers
 from het_ros.evaluation.protocols import follow
 from het_ros.evaluation.trackers import DEFAULT, parsed, split_names, tracker_spec
+from het_ros.tracking.paper.config import PaperConfig
 from het_ros.tracking.parameter import Parameter
 
 
@@ -51,10 +51,9 @@ def config_of(name):
 
 def test_het_is_the_default_configuration_and_het_paper_the_papers():
     assert config_of("het") == TrackerConfig()
-    assert config_of("het-paper") == TrackerConfig.paper()
+    assert config_of("het-paper") == PaperConfig()
     assert config_of("het:sub_patches=5,seed=3") == TrackerConfig(sub_patches=5, seed=3)
-    paper = dataclasses.replace(TrackerConfig.paper(), sub_patches=7)
-    assert config_of("het-paper:sub_patches=7") == paper
+    assert config_of("het-paper:sub_patches=7") == PaperConfig(sub_patches=7)
 
 
 @pytest.mark.parametrize(
@@ -78,6 +77,7 @@ def test_a_configuration_may_be_a_file(tmp_path, file, text):
     [
         ("nobody", "no tracker is called 'nobody'; there are het, het-paper, csrt"),
         ("het:colour=1", "TrackerConfig has no colour; it has .*sub_patches"),
+        ("het-paper:ridge=1", "PaperConfig has no ridge; it has .*sub_patches"),
         ("het:sub_patches=0", "sub_patches lies in"),
         ("het:sub_patches=many", "sub_patches takes a int, not 'many'"),
         ("het:none.yaml", "there is no configuration file none.yaml"),

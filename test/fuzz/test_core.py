@@ -8,8 +8,10 @@ import numpy as np
 from hypothesis import strategies as st
 from hypothesis.stateful import RuleBasedStateMachine, initialize, precondition, rule
 
-from het_ros import Box, HierarchicalEnsembleTracker, TrackerConfig
+from het_ros import Box, TrackerConfig
+from het_ros.evaluation.trackers import tracker_of
 from het_ros.tracking.estimate import State
+from het_ros.tracking.paper.config import PaperConfig
 
 from .cases import COUNTS, cases
 from .footage import BOX, frames
@@ -21,18 +23,18 @@ CONFIGS = st.sampled_from(
     [
         TrackerConfig(),
         TrackerConfig(features=20, sub_patches=3),
-        TrackerConfig(features=1, sub_patches=1, rectangles=1, scales=1),
-        TrackerConfig(working_side=16.0, cell=1, features=10),
-        TrackerConfig(working_side=0.0, features=10, search_radius=8.0),
-        TrackerConfig(trust=False, features=10),
+        TrackerConfig(features=1, sub_patches=1),
+        TrackerConfig(working_side=8.0, features=10, search_radius=8.0),
+        TrackerConfig(background=False, flow_weight=0.0, features=10),
         TrackerConfig(colour_weight=1.0, learning_rate=0.0, ridge=1e-9, features=10),
-        TrackerConfig(scales=65, scale_step=1.2, scale_rate=1.0, features=10),
-        TrackerConfig(hidden=1.0, return_probability=1.0, lost_after=0.0, features=10),
-        TrackerConfig(cell=16, features=10, largest_rectangle=0.01),
-        TrackerConfig(channels=("gray",), sub_patch_fraction=0.1, features=10),
+        TrackerConfig(colour_weight=0.0, scale_rate=1.0, growth_limit=100.0, features=10),
+        TrackerConfig(learning_rate=1.0, fast_learning_rate=1.0, first_frame=1.0, features=10),
+        TrackerConfig(lost_after=0.0, features=10),
+        TrackerConfig(sub_patch_fraction=0.1, features=10),
         TrackerConfig(acceleration=1e4, measurement_noise=1e-4, longest_dt=60.0, features=10),
         TrackerConfig(acceleration=0.0, measurement_noise=10.0, features=10),
-        TrackerConfig.paper(),
+        PaperConfig(),
+        PaperConfig(features=10, sub_patches=3, search_radius=8.0),
     ]
 )
 PLACE = st.floats(-300, 300) | st.sampled_from([0.0, -1e9, 1e9, -0.5, 1e300])
@@ -47,7 +49,7 @@ class Core(RuleBasedStateMachine):
     @initialize(config=CONFIGS)
     def make(self, config):
         COUNTS["core"] += 1
-        self.tracker = HierarchicalEnsembleTracker(config)
+        self.tracker = tracker_of(config)
         self.last = None
 
     @rule(image=pixels(), x=PLACE, y=PLACE, w=SIDE, h=SIDE)

@@ -2,12 +2,11 @@
 # SPDX-License-Identifier: Apache-2.0
 from pathlib import Path
 
-import pytest
 import yaml
 
 from het_ros import TrackerConfig
 from het_ros.ros.parameters import NodeConfig
-from het_ros.ros.reference import parameters_file, parameters_page, with_table
+from het_ros.ros.reference import parameters_file, parameters_page
 from het_ros.ros.tracker_node import TrackerNode
 from het_ros.tracking.parameter import parameters_of
 
@@ -21,13 +20,6 @@ def test_docs_are_in_step_with_the_tables():
 
 def test_config_is_in_step_with_the_tables():
     assert (ROOT / "config" / "tracker.yaml").read_text() == parameters_file(), STALE
-
-
-def test_readme_is_in_step_with_the_tables():
-    readme = ROOT / "README.md"
-    if not readme.exists():
-        pytest.skip("this checkout has no README.md")
-    assert with_table(readme.read_text()) == readme.read_text(), STALE
 
 
 def test_config_holds_every_default():
@@ -47,11 +39,3 @@ def test_a_node_starts_with_the_config(graph):
         TrackerNode(context=graph.context, cli_args=["--ros-args", "--params-file", file])
     )
     assert node.get_parameter("max_gap").value == NodeConfig().max_gap
-
-
-def test_a_text_without_marks_is_left_alone():
-    assert with_table("nothing here") == "nothing here"
-    text = with_table("a\n<!-- parameters -->\nstale row\n<!-- /parameters -->\nb")
-    assert "stale row" not in text
-    assert text.startswith("a\n<!-- parameters -->\n| parameter ")
-    assert text.endswith("<!-- /parameters -->\nb")

@@ -21,14 +21,13 @@ from het_ros.tracking.features.channels import Pixels, Plane, deviation
 
 Corner = tuple[float, float]
 
-_BITS = 4  # a channel: 16 x 16 x 16 bins of colour, or 16 x 16 of gray and its deviation; chosen
-
 
 @dataclass(frozen=True)
 class ColourConfig:
     """Constants of the histograms; all chosen.
 
     Attributes:
+        bits: a channel: 16 x 16 x 16 bins of colour, or 16 x 16 of gray and its deviation.
         around: side of the square that a gray pixel's deviation is taken from, px.
         deviation_scale: that deviation, which seldom exceeds 64 gray values, fills a byte.
         empty: share of a bin below which little is known of its colour.
@@ -37,6 +36,7 @@ class ColourConfig:
         ring: width of the surroundings over the target's mean side.
     """
 
+    bits: int = 4
     around: int = 7
     deviation_scale: float = 4.0
     empty: float = 1e-4
@@ -130,19 +130,19 @@ def colour_bins(pixels: NDArray[np.uint8]) -> NDArray[np.intp]:
     A gray pixel's bin is that of its level and of how much the levels around it differ: the level
     alone tells a target from its surroundings far less well than a colour does.
     """
+    config = ColourConfig()
+    bits, unused = config.bits, 8 - config.bits
     if pixels.ndim == 2:
-        config = ColourConfig()
         around = deviation(pixels, config.around)
         differ = cv2.convertScaleAbs(around, alpha=config.deviation_scale)
-        unused = 8 - _BITS
-        both = pixels >> unused << _BITS | np.asarray(differ, np.uint8) >> unused
+        both = pixels >> unused << bits | np.asarray(differ, np.uint8) >> unused
         return both.astype(np.intp)
     # The upper bits of each channel where they belong, in as few and as narrow passes as can be.
-    upper = np.uint8(256 - (1 << 8 - _BITS))
+    upper = np.uint8(256 - (1 << unused))
     first = (pixels[..., 0] & upper).astype(np.uint16)
-    first <<= np.uint16(3 * _BITS - 8)
-    first |= (pixels[..., 1] & upper) >> np.uint8(8 - 2 * _BITS) | pixels[..., 2] >> np.uint8(
-        8 - _BITS
+    first <<= np.uint16(3 * bits - 8)
+    first |= (pixels[..., 1] & upper) >> np.uint8(8 - 2 * bits) | pixels[..., 2] >> np.uint8(
+        unused
     )
     return np.asarray(first, np.intp)
 
@@ -187,4 +187,4 @@ def _cut(
 
 
 def _histogram(bins: NDArray[np.intp]) -> Plane:
-    return np.bincount(bins.ravel(), minlength=1 << 3 * _BITS).astype(np.float32)
+    return np.bincount(bins.ravel(), minlength=1 << 3 * ColourConfig().bits).astype(np.float32)

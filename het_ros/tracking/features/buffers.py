@@ -23,6 +23,8 @@ class Buffers:
 
     def __init__(self) -> None:
         self._arrays: list[Array] = []
+        # Of an array that nothing but the list holds; counted, as Python's versions differ.
+        self._unheld = _references([np.empty(1)], 0)
 
     def empty(self, shape: tuple[int, ...], dtype: DTypeLike) -> Array:
         """A writeable array that owns its memory and that nobody else holds.
@@ -36,7 +38,7 @@ class Buffers:
         found: Array | None = None
         kept: list[Array] = []
         for index in range(len(self._arrays)):
-            held = _references(self._arrays, index) > _UNHELD
+            held = _references(self._arrays, index) > self._unheld
             array = self._arrays[index]
             fits = array.shape == shape and array.dtype == np.dtype(dtype)
             if fits and not held and found is None:
@@ -55,6 +57,3 @@ def _references(arrays: list[Array], index: int) -> int:
     """References to an array of a list, of which its views hold one each."""
     return sys.getrefcount(arrays[index])
 
-
-# Of an array that nothing but the list holds; counted, as Python's versions count differently.
-_UNHELD = _references([np.empty(1)], 0)

@@ -6,6 +6,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from dataclasses import dataclass
 from functools import cached_property
 
 import cv2
@@ -15,19 +16,39 @@ from numpy.typing import NDArray
 Pixels = NDArray[np.uint8]
 Plane = NDArray[np.float32]
 
-ORIENTATIONS = 6  # directions over half a turn; chosen: 30 degrees each, as in HOG-like features
-# Texture. Chosen: deviations of gray values rarely exceed 64, so times this they fill a byte;
-# they are taken from a square of this side, px.
-_TEXTURE_SCALE = 4.0
-_TEXTURE_SIDE = 11
-# Normalised gradients lie in 0..2 or so. Chosen: times this they fill a byte.
-_GRADIENT_SCALE = 80.0
-# Chosen: gradients far below this many gray values are noise; normalisation does not raise them.
-_GRADIENT_FLOOR = 4.0
-# The last angle before half a turn, in steps between directions; geometry.
-_BELOW_HALF_TURN = float(np.nextafter(np.float32(ORIENTATIONS), np.float32(0)))
-# Rows, and as many columns, about, of an image that are looked at for colour. Chosen: enough.
-_COLOUR_SAMPLES = 64
+
+@dataclass(frozen=True)
+class ChannelConfig:
+    """Constants of the channels.
+
+    Attributes:
+        orientations: directions over half a turn (chosen: 30 degrees each, as histograms of
+            gradients have about).
+        texture_side: side of the square that a deviation is taken from, px (chosen).
+        texture_scale: channel values per gray value of deviation (chosen: deviations seldom
+            exceed 64, so they fill a byte).
+        gradient_scale: channel values per normalised gradient (chosen: these lie in 0..2 or so
+            and fill a byte).
+        gradient_floor: gray values; gradients far below it are noise, and normalisation does not
+            raise them (chosen).
+        colour_samples: rows, and as many columns, about, of an image that are looked at for
+            colour (chosen: enough).
+    """
+
+    orientations: int = 6
+    texture_side: int = 11
+    texture_scale: float = 4.0
+    gradient_scale: float = 80.0
+    gradient_floor: float = 4.0
+    colour_samples: int = 64
+
+    @property
+    def below_half_turn(self) -> float:
+        """The last angle before half a turn, in steps between directions."""
+        return float(np.nextafter(np.float32(self.orientations), np.float32(0)))
+
+
+_CONFIG = ChannelConfig()
 
 
 def is_colourless(image: Pixels, below: float) -> bool:
@@ -40,7 +61,7 @@ def is_colourless(image: Pixels, below: float) -> bool:
     """
     if image.ndim == 2:
         return True
-    step = max(1, min(image.shape[:2]) // _COLOUR_SAMPLES)
+    step = max(1, min(image.shape[:2]) // _CONFIG.colour_samples)
     some = image[::step, ::step].astype(np.int16)
     return float((some.max(axis=2) - some.min(axis=2)).mean()) < below
 
@@ -72,7 +93,7 @@ def deviation(gray: Pixels, side: int) -> Plane:
 
 
 def normalised_gradient(lightness: Pixels, cell: int) -> tuple[Plane, Plane]:
-    """Gradient's locally normalised magnitude and its direction in [0, ORIENTATIONS).
+    """Gradient's locally normalised magnitude and its direction in [0, orientations).
 
     Divided by the mean magnitude around, a gradient says the same under a lamp and in the shade.
     cv2.magnitude gives other last bits from process to process; the square root of a whole
@@ -88,9 +109,9 @@ def normalised_gradient(lightness: Pixels, cell: int) -> tuple[Plane, Plane]:
     dx = np.asarray(cv2.Sobel(lightness, cv2.CV_32F, 1, 0, ksize=1), np.float32)
     dy = np.asarray(cv2.Sobel(lightness, cv2.CV_32F, 0, 1, ksize=1), np.float32)
     directions = np.asarray(cv2.phase(dx, dy), np.float32)
-    directions *= ORIENTATIONS / math.pi
-    # Directions k and k + ORIENTATIONS are the same; the subtraction is exact.
-    turned = cv2.threshold(directions, _BELOW_HALF_TURN, ORIENTATIONS, cv2.THRESH_BINARY)[1]
+    directions *= _CONFIG.orientations / math.pi
+    # Directions k and k + orientations are the same; the subtraction is exact.
+    turned = cv2.threshold(directions, _CONFIG.below_half_turn, _CONFIG.orientations, cv2.THRESH_BINARY)[1]
     directions -= turned
     np.multiply(dx, dx, out=dx)
     np.multiply(dy, dy, out=dy)
@@ -98,8 +119,8 @@ def normalised_gradient(lightness: Pixels, cell: int) -> tuple[Plane, Plane]:
     magnitude = np.sqrt(dx, out=dx)
     around = 4 * cell + 1
     mean = np.asarray(cv2.blur(magnitude, (around, around)), np.float32)
-    mean += _GRADIENT_FLOOR
-    cv2.divide(magnitude, mean, magnitude, scale=_GRADIENT_SCALE)
+    mean += _CONFIG.gradient_floor
+    cv2.divide(magnitude, mean, magnitude, scale=_CONFIG.gradient_scale)
     return magnitude, directions
 
 
@@ -176,7 +197,7 @@ class _Source:
     @property
     def texture(self) -> Plane:
         """(H, W) float32, how much the gray values around each pixel differ."""
-        return np.asarray(_TEXTURE_SCALE * deviation(self.gray, _TEXTURE_SIDE), np.float32)
+        return np.asarray(_CONFIG.texture_scale * deviation(self.gray, _CONFIG.texture_side), np.float32)
 
     @cached_property
     def gradient(self) -> tuple[Plane, Plane]:
@@ -185,7 +206,7 @@ class _Source:
 
 
 def _orientation(k: int) -> Callable[[_Source], Plane]:
-    """The part of the gradient that runs along direction k of ORIENTATIONS over half a turn.
+    """The part of the gradient that runs along direction k of all over half a turn.
 
     A gradient is shared between the two directions next to it, in proportion.
     """
@@ -193,7 +214,7 @@ def _orientation(k: int) -> Callable[[_Source], Plane]:
     def channel(source: _Source) -> Plane:
         magnitude, direction = source.gradient
         if k == 0:  # which is next to the last one as well
-            away = np.minimum(direction, ORIENTATIONS - direction)
+            away = np.minimum(direction, _CONFIG.orientations - direction)
         else:
             away = np.subtract(direction, k)
             np.abs(away, out=away)
@@ -216,7 +237,7 @@ _TABLE: dict[str, tuple[Callable[[_Source], NDArray[np.generic]], str | None]] =
     "blue_yellow": (lambda source: source.lab[..., 2], None),
     "texture": (lambda source: source.texture, "texture"),
     "gradient": (lambda source: source.gradient[0], "gradient"),
-    **{f"orientation{k}": (_orientation(k), f"orientation{k}") for k in range(ORIENTATIONS)},
+    **{f"orientation{k}": (_orientation(k), f"orientation{k}") for k in range(_CONFIG.orientations)},
 }
 
 CHANNEL_NAMES: tuple[str, ...] = tuple(_TABLE)

@@ -24,8 +24,18 @@ Integrals = Sequence[NDArray[Any]]
 FeatureMaps = NDArray[np.floating[Any]]
 _Operation = tuple[Callable[..., Any], FeatureMaps, FeatureMaps, FeatureMaps]
 
-_EXACT_IN_FLOAT32 = 2**24  # whole numbers below this; float32's mantissa
-_CACHE = 2**18  # so many sums stay in a processor's cache; chosen: 1 MB of float32
+
+@dataclass(frozen=True)
+class SumsConfig:
+    """Constants of the sums.
+
+    Attributes:
+        exact_in_float32: whole numbers below this are (geometry: float32's mantissa).
+        cache: so many sums stay in a processor's cache (chosen: 1 MB of float32).
+    """
+
+    exact_in_float32: int = 2**24
+    cache: int = 2**18
 
 
 class Rectangle(NamedTuple):
@@ -140,7 +150,7 @@ class RectangleSums:
         lines, stride = self.shape
         width, height = matrix.size
         whole = np.issubdtype(integrals[0].dtype, np.integer)
-        exact = whole and 255 * lines * stride < _EXACT_IN_FLOAT32
+        exact = whole and 255 * lines * stride < SumsConfig().exact_in_float32
         self._stack = np.zeros((len(integrals), *self.shape), np.float32 if exact else np.float64)
         self._bank = np.empty(0, self._stack.dtype)
         # What comes of places up to here is asked for.
@@ -212,7 +222,7 @@ class RectangleSums:
         uses = Counter(rectangle.y1 - rectangle.y0 for rectangle in rectangles)
         heights = [height for height, times in uses.items() if times > 1]
         flat, stride = self._stack[rectangles[0].channel].reshape(-1), self.shape[1]
-        if len(heights) * flat.size > _CACHE:
+        if len(heights) * flat.size > SumsConfig().cache:
             return {}
         # All channels in turn have theirs in the same place.
         if self._bank.size < len(heights) * flat.size:

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from het_ros.tracking.features.channels import (
-    ORIENTATIONS,
+    ChannelConfig,
     Pixels,
     bgr_of,
     channel_stack,
@@ -30,10 +30,6 @@ from het_ros.tracking.features.window import cut_window
 Floats = NDArray[np.float64]
 Cells = tuple[int, int]
 
-_CHANNELS = ("lightness", "green_red", "blue_yellow", "gradient") + tuple(
-    f"orientation{k}" for k in range(ORIENTATIONS)
-)
-
 
 @dataclass(frozen=True)
 class WindowConfig:
@@ -45,12 +41,25 @@ class WindowConfig:
         least_cells: a side of a target in cells, at least (geometry: a sub-patch needs room).
         rectangles: Z, most rectangles of a feature (paper).
         margin: cells around the search radius (geometry: sub-cell places reach one cell over).
+        channels: by name, of colour images (chosen: colour, and edges by direction as
+            histograms of gradients have them).
     """
 
     cell: int = 2
     least_cells: int = 4
     rectangles: int = 4
     margin: int = 1
+    channels: tuple[str, ...] = (
+        "lightness",
+        "green_red",
+        "blue_yellow",
+        "gradient",
+        *(f"orientation{k}" for k in range(ChannelConfig().orientations)),
+    )
+
+    def margin_of(self, search_radius: float) -> int:
+        """Cells of a search window around the target, for a radius in working px."""
+        return math.ceil(search_radius / self.cell) + self.margin
 
 
 def target_cells(box_size: tuple[float, float], working_side: float) -> Cells:
@@ -93,8 +102,8 @@ class FeatureExtractor:
         self.cells, self.cell = cells, config.cell
         self.gray = is_colourless(image, gray_below)
         self._radius = search_radius / config.cell
-        self._margin = math.ceil(self._radius) + config.margin
-        self._channels = names_for(_CHANNELS, self.gray)
+        self._margin = config.margin_of(search_radius)
+        self._channels = names_for(config.channels, self.gray)
         matrix = draw_measurement_matrix(
             sub_patch, len(self._channels), features, config.rectangles, rng
         )

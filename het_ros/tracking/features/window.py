@@ -14,23 +14,22 @@ from numpy.typing import NDArray
 Pixels = NDArray[np.uint8]
 Points = NDArray[np.float64]
 
-# A window that shrinks its source by more than this is averaged, not interpolated. Chosen:
-# bilinear interpolation reads 2 px a side, so from about there on it skips some.
-_AVERAGE_FROM = 1.5
-# Of a source that is larger still, only every k-th px is read, so that each window px averages
-# this many px a side. Chosen: the cost of a window then does not depend on the target's size.
-_SAMPLES = 3
 
+@dataclass(frozen=True)
+class SamplingConfig:
+    """Constants of the window's resolution.
 
-def check_image(image: Pixels) -> None:
-    """Raise ValueError unless the image is (H, W, 3) or (H, W) uint8 with at least one px."""
-    if not isinstance(image, np.ndarray) or image.dtype != np.uint8:
-        kind = getattr(image, "dtype", type(image).__name__)
-        raise ValueError(f"an image must be a uint8 array, not {kind}: convert it first")
-    if image.size == 0 or image.ndim not in (2, 3) or (image.ndim == 3 and image.shape[2] != 3):
-        raise ValueError(
-            f"an image must be of shape (H, W, 3) in BGR order or (H, W), not {image.shape}"
-        )
+    Attributes:
+        average_from: a window that shrinks its source by more is averaged, not interpolated
+            (chosen: bilinear interpolation reads 2 px a side, so from about there on it skips
+            some).
+        samples: of a source that is larger still, only every k-th px is read, so that each
+            window px averages this many px a side (chosen: the cost of a window then does not
+            depend on the target's size).
+    """
+
+    average_from: float = 1.5
+    samples: int = 3
 
 
 @dataclass(frozen=True)
@@ -128,11 +127,11 @@ def _averaged(source: Pixels, scale: tuple[float, float]) -> tuple[Pixels, Point
         The source, and how many image px one px of it stands for, (2,), in x and in y.
     """
     shrink = 1 / min(scale)
-    if shrink <= _AVERAGE_FROM:
+    if shrink <= SamplingConfig().average_from:
         return source, np.ones(2)
     rows, columns = source.shape[:2]
     size = max(1, round(columns * scale[0])), max(1, round(rows * scale[1]))
-    thinned = _thinned(source, max(1, int(shrink / _SAMPLES)))
+    thinned = _thinned(source, max(1, int(shrink / SamplingConfig().samples)))
     averaged = cv2.resize(thinned, size, interpolation=cv2.INTER_AREA)
     return np.asarray(averaged, np.uint8), np.array([columns / size[0], rows / size[1]])
 

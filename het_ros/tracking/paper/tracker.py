@@ -10,7 +10,8 @@ from typing import Any
 
 from het_ros.tracking.box import Box
 from het_ros.tracking.estimate import Estimate, State
-from het_ros.tracking.features.window import Pixels, check_image
+from het_ros.tracking.features.window import Pixels
+from het_ros.tracking.images import check_image
 from het_ros.tracking.paper.config import PaperConfig
 from het_ros.tracking.paper.target import Target
 
@@ -53,13 +54,7 @@ class PaperTracker:
             ValueError: the image is not of that kind, or the box lies wholly outside it, or
                 would take more than ``most_memory``. The target followed before stays.
         """
-        check_image(image)
-        height, width = image.shape[:2]
-        if not box.touches_image(width, height):
-            raise ValueError(
-                f"the box {box.as_tuple()} lies wholly outside the image of {width} x {height} "
-                "px: send x, y, w, h in px of this image"
-            )
+        check_image(image, box)
         self._target = Target(self.config, image, box)
         self._state = State.TRACKING
         return self._target.estimate(1.0, State.TRACKING)

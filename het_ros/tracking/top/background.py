@@ -25,19 +25,47 @@ from het_ros.tracking.features.window import cut_window
 Floats = NDArray[np.float64]
 Image = NDArray[np.uint8]
 
-_TARGET_SIDE = 20.0  # px of a keyframe
-_LONGEST_SIDE = 256.0  # px of a keyframe at most
-_SMALLEST_PATCH = 4  # px: smaller ones look like anything
-_EVERY = 0.25  # s of view between two keyframes
-_KEPT = 12  # keyframes: those of the last 3 s of view
-_COMPARED = 5  # of them at most for a place, and for the target
-_NOT_NOW = 0.3  # s: what the place looked like less than this ago says nothing, ...
-_NOT_LATELY = 0.7  # ... nor what the target did less than this ago
-_ELSEWHERE = 0.75  # distance of two boxes over their mean side, in x or y: they hardly overlap
-_CAMERA_ERROR = 0.4  # target sizes: how far off a place may be in an older keyframe
-_TARGET_ERROR = 0.15  # target sizes, of the target's own place
-_ALIKE = 0.8  # correlation from which on two patches show the same
-_CLEARLY = 0.1  # by how much more than the target's it must be
+
+@dataclass(frozen=True)
+class BackgroundConfig:
+    """Constants of the background model.
+
+    Attributes:
+        target_side: side of the target in a keyframe, px (chosen: enough to tell two patches
+            apart, and small enough for a dozen keyframes).
+        longest_side: of a keyframe, px (chosen: memory).
+        smallest_patch: side below which a patch is not compared, px (chosen: smaller ones look
+            like anything).
+        every: time of view between two keyframes, s (chosen: a person walks half a width).
+        kept: keyframes (chosen: those of the last 3 s of view).
+        compared: of them at most for a place, and for the target (chosen: time).
+        not_now: s; what a place looked like less than this ago says nothing of whether something
+            stood there before (chosen: a keyframe's time) ...
+        not_lately: ... nor what the target looked like less than this ago (chosen: what hides it
+            comes over it within that time).
+        elsewhere: distance of two boxes over their mean side, in x or y, from which on they
+            hardly overlap (geometry: a quarter of the side is left).
+        camera_error: how far off a place may be in an older keyframe, target sides (chosen: what
+            the errors of ego-motion add up to).
+        target_error: the same of the target's own place, target sides (chosen: what a box is off
+            by).
+        alike: correlation from which on two patches show the same (chosen).
+        clearly: by how much more than with the target it must be (chosen: noise of both).
+    """
+
+    target_side: float = 20.0
+    longest_side: float = 256.0
+    smallest_patch: int = 4
+    every: float = 0.25
+    kept: int = 12
+    compared: int = 5
+    not_now: float = 0.3
+    not_lately: float = 0.7
+    elsewhere: float = 0.75
+    camera_error: float = 0.4
+    target_error: float = 0.15
+    alike: float = 0.8
+    clearly: float = 0.1
 
 
 @dataclass(frozen=True)
@@ -69,9 +97,10 @@ class Background:
     """
 
     def __init__(self, shape: tuple[int, ...], side: float) -> None:
+        config = self._config = BackgroundConfig()
         self._shape = shape[:2]
-        self._scale = min(1.0, _TARGET_SIDE / side, _LONGEST_SIDE / max(self._shape))
-        self._keyframes: deque[Keyframe] = deque(maxlen=_KEPT)
+        self._scale = min(1.0, config.target_side / side, config.longest_side / max(self._shape))
+        self._keyframes: deque[Keyframe] = deque(maxlen=config.kept)
         self._at: Floats = np.zeros(2)
         self._time = 0.0
 
@@ -91,9 +120,10 @@ class Background:
             self._shape = image.shape[:2]
             self._keyframes.clear()
         self._time += dt
-        if self._keyframes and self._time - self._keyframes[-1].time < _EVERY:
+        if self._keyframes and self._time - self._keyframes[-1].time < self._config.every:
             return
-        height, width = (max(_SMALLEST_PATCH, round(side * self._scale)) for side in self._shape)
+        least = self._config.smallest_patch
+        height, width = (max(least, round(side * self._scale)) for side in self._shape)
         pixels = cut_window(image, 0.0, 0.0, width, height, (self._scale, self._scale)).pixels
         self._keyframes.append(Keyframe(pixels.copy(), self._at, box, self._time))
 
@@ -106,8 +136,8 @@ class Background:
         """
         if image.shape[:2] != self._shape:
             return False
-        patch = self._patch(image, box)
-        if min(patch.shape[:2]) < _SMALLEST_PATCH:
+        config, patch = self._config, self._patch(image, box)
+        if min(patch.shape[:2]) < config.smallest_patch:
             return False
         size = np.array([box.w, box.h])
         place = np.array([box.x, box.y]) - self._at
@@ -115,17 +145,17 @@ class Background:
         before = [
             (one, place + one.at)
             for one in latest_first
-            if self._time - one.time > _NOT_NOW and not self._was_target(one, box)
+            if self._time - one.time > config.not_now and not self._was_target(one, box)
         ]
-        stood = self._best_of(before, patch, _CAMERA_ERROR * size)
-        if stood <= _ALIKE:
+        stood = self._best_of(before, patch, config.camera_error * size)
+        if stood <= config.alike:
             return False
         target = [
             (one, np.array(one.box.centre) - size / 2)
             for one in latest_first
-            if self._time - one.time > _NOT_LATELY
+            if self._time - one.time > config.not_lately
         ]
-        return stood > self._best_of(target, patch, _TARGET_ERROR * size) + _CLEARLY
+        return stood > self._best_of(target, patch, config.target_error * size) + config.clearly
 
     def _best_of(self, places: Sequence[Place], patch: Image, error: Floats) -> float:
         """Highest correlation of a patch with the first places that keyframes show, or -1."""
@@ -134,7 +164,7 @@ class Background:
             for one, corner in places
         )
         shown = (fit for fit in fits if fit is not None)
-        return max(islice(shown, _COMPARED), default=-1.0)
+        return max(islice(shown, self._config.compared), default=-1.0)
 
     def _patch(self, image: Image, box: Box) -> Image:
         """What is in the box, as small as in a keyframe."""
@@ -148,7 +178,7 @@ class Background:
         """Whether the target's box in a keyframe covered much of what is in ``box`` now."""
         way = np.array(one.box.centre) - one.at - np.array(box.centre) + self._at
         sides = np.array([one.box.w + box.w, one.box.h + box.h]) / 2
-        return bool((np.abs(way) <= _ELSEWHERE * sides).all())
+        return bool((np.abs(way) <= self._config.elsewhere * sides).all())
 
 
 def best_fit(pixels: Image, corner: Floats, patch: Image, error: Floats) -> float | None:

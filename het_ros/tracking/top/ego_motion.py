@@ -8,6 +8,7 @@ believed only where the picture fits better there than where it was or where it 
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from functools import cache
 
 import cv2
@@ -17,10 +18,23 @@ from numpy.typing import NDArray
 Image = NDArray[np.uint8]
 Floats = NDArray[np.float64]
 
-_SIDE = 128  # px, longer side of a thumbnail
-_SMALLEST = 16  # px, shorter side below which there is nothing to register
-_BETTER = 0.85  # of the difference that is left by any other explanation
-_STEADY_RATE = 0.3  # of the camera's mean velocity, a frame
+
+@dataclass(frozen=True)
+class EgoMotionConfig:
+    """Constants of the ego-motion.
+
+    Attributes:
+        side: longer side of a thumbnail, px (chosen: about 1 % of a picture's side is seen).
+        smallest: shorter side below which there is nothing to register, px (chosen).
+        better: share of the difference left by any other explanation that may be left by what
+            was registered (chosen: repeating patterns fit at several places about as well).
+        steady_rate: weight of a new frame in the camera's mean velocity (chosen: three frames).
+    """
+
+    side: int = 128
+    smallest: int = 16
+    better: float = 0.85
+    steady_rate: float = 0.3
 
 
 class EgoMotion:
@@ -34,6 +48,7 @@ class EgoMotion:
     """
 
     def __init__(self, image: Image) -> None:
+        self._config = EgoMotionConfig()
         self._size = image.shape[:2]
         self._thumbnail = thumbnail(image)
         self.velocity: Floats = np.zeros(2)
@@ -48,11 +63,12 @@ class EgoMotion:
         before, now = self._thumbnail, thumbnail(image)
         same = image.shape[:2] == self._size
         self._thumbnail, self._size = now, image.shape[:2]
-        if not same or min(now.shape) < _SMALLEST:
+        if not same or min(now.shape) < self._config.smallest:
             return np.zeros(2)
         unit = max(self._size) / max(now.shape)
         shift: Floats = registered(before, now, self.velocity * dt / unit) * unit
-        self.velocity = self.velocity + _STEADY_RATE * (shift / dt - self.velocity)
+        rate = self._config.steady_rate
+        self.velocity = self.velocity + rate * (shift / dt - self.velocity)
         return shift
 
 
@@ -62,12 +78,12 @@ def thumbnail(image: Image) -> Image:
     Of large images only every k-th px is read, so that it costs the same for all. What is left is
     halved first, which OpenCV does many times faster than shrinking by any other ratio.
     """
-    plane = image if image.ndim == 2 else image[..., 1]
-    ratio = min(1.0, _SIDE / max(plane.shape))
+    plane, longest = image if image.ndim == 2 else image[..., 1], EgoMotionConfig().side
+    ratio = min(1.0, longest / max(plane.shape))
     height, width = (max(1, round(side * ratio)) for side in plane.shape)
-    step = max(1, max(plane.shape) // (2 * _SIDE))
+    step = max(1, max(plane.shape) // (2 * longest))
     plane = np.ascontiguousarray(plane[::step, ::step])
-    if min(plane.shape) > 1 and max(plane.shape) >= 2 * _SIDE:
+    if min(plane.shape) > 1 and max(plane.shape) >= 2 * longest:
         rows, columns = (side // 2 for side in plane.shape)
         halved = np.ascontiguousarray(plane[: 2 * rows, : 2 * columns])
         plane = np.asarray(
@@ -96,7 +112,8 @@ def registered(before: Image, now: Image, expected: Floats) -> Floats:
     if any(np.array_equal(np.rint(measured), np.rint(way)) for way in (still, expected)):
         return measured
     by_expected, by_still = (_left_over(before, now, way) for way in (expected, still))
-    if _left_over(before, now, measured) < _BETTER * min(by_expected, by_still):
+    enough = EgoMotionConfig().better * min(by_expected, by_still)
+    if _left_over(before, now, measured) < enough:
         return measured
     return expected if by_expected < by_still else still
 

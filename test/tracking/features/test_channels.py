@@ -9,7 +9,7 @@ import pytest
 
 from het_ros.tracking.features.channels import (
     CHANNEL_NAMES,
-    ORIENTATIONS,
+    ChannelConfig,
     bgr_of,
     channel_stack,
     deviation,
@@ -22,6 +22,7 @@ from het_ros.tracking.features.channels import (
 RNG = np.random.default_rng(0)
 COLOUR = RNG.integers(0, 256, (9, 7, 3), dtype=np.uint8)
 GRAY = RNG.integers(0, 256, (9, 7), dtype=np.uint8)
+ORIENTATIONS = ChannelConfig().orientations
 ORIENTED = tuple(f"orientation{k}" for k in range(ORIENTATIONS))
 
 

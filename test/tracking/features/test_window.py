@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from features.slow import replicated_window
-from het_ros.tracking.features.window import check_image, cut_window
+from het_ros.tracking.features.window import cut_window
 
 IMAGE = np.arange(12 * 17, dtype=np.uint8).reshape(12, 17)
 
@@ -68,17 +68,3 @@ def test_a_mark_is_found_where_the_conversion_says(scale, at):
     found = np.array([(columns * mass).sum(), (rows * mass).sum()]) / mass.sum()
     error = (window.to_image(found) - at) * scale
     np.testing.assert_allclose(error, 0, atol=0.15)
-
-
-@pytest.mark.parametrize(
-    ("image", "says"),
-    [
-        (np.zeros((20, 20, 3), np.float32), "uint8 array, not float32"),
-        (np.zeros((20, 20, 4), np.uint8), r"\(20, 20, 4\)"),
-        (np.zeros((0, 20), np.uint8), r"\(0, 20\)"),
-        ([[1, 2], [3, 4]], "not list"),
-    ],
-)
-def test_what_is_no_image_is_refused(image, says):
-    with pytest.raises(ValueError, match=says):
-        check_image(image)
