@@ -23,7 +23,7 @@ PEERS_SPACE := $(CLEAN); source $(PEERS)/bin/activate; export AMENT_PREFIX_PATH=
 	source install/setup.bash
 
 .PHONY: help setup build run test test-oldest fuzz faults soak evaluate compare scenes bench docs \
-	format clean
+	count format clean
 
 help: ## What there is to make
 	@grep -E '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:[^#]*## /\t/' | expand -t 14
@@ -146,6 +146,9 @@ bench: $(BUILT) $(PEERS)/.ready ## Speed of the core and of the node, as ratios 
 
 docs: $(BUILT) ## Write what is generated from the parameter tables
 	@$(WORKSPACE); python -m het_ros.ros.reference .
+
+count: ## Lines, parameters and module constants of the tracker
+	@$(PYTHON) .ci/count.py
 
 format: $(VENV)/.ready ## Format the code
 	$(ROS); ruff check --fix .; ruff format .
