@@ -63,11 +63,13 @@ class ManagedNode(LifecycleNode):
     def on_deactivate(self, state: LifecycleState) -> TransitionCallbackReturn:
         """Active -> inactive."""
         self.activated.close()
+        self.get_logger().info("deactivated: no images are taken")
         return super().on_deactivate(state)
 
     def on_cleanup(self, state: LifecycleState) -> TransitionCallbackReturn:
         """Inactive -> unconfigured."""
         self.configured.close()
+        self.get_logger().info("cleaned up")
         return super().on_cleanup(state)
 
     def on_shutdown(self, state: LifecycleState) -> TransitionCallbackReturn:

@@ -19,6 +19,7 @@ from geometry_msgs.msg import (
 from rclpy.node import Node
 from rclpy.qos import QoSProfile, ReliabilityPolicy
 from sensor_msgs.msg import Image
+from std_msgs.msg import Float32
 
 from het_ros.ros.quality import overridable, publisher_events
 
@@ -31,6 +32,7 @@ OUTPUTS: dict[str, type] = {
     "pose": PoseWithCovarianceStamped,
     "velocity": TwistWithCovarianceStamped,
     "status": DiagnosticArray,
+    "score": Float32,
     "bearing": Vector3Stamped,
     "target_pose": PoseStamped,
     "debug_image": Image,
