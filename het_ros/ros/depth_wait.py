@@ -22,6 +22,7 @@ KEPT = 8  # stamps of depth, and of images
 SILENT = 1.0  # s without any depth image: no one is waited for
 STRANGE = 1.0  # s between the stamps of image and newest depth: another clock, or none
 WORTH = 0.75  # a depth image that is to come must be as much nearer than the newest one
+DISORDER = 5.0  # s since depth images changed places on the way: it may happen again
 VAIN = 5  # waits in a row that brought nothing: depth comes too late to be waited for
 
 
@@ -45,12 +46,15 @@ class DepthWait:
         self._came = -np.inf
         self._images: deque[tuple[int, float]] = deque(maxlen=KEPT)
         self._vain = 0
+        self._disorder = -np.inf
 
     def depth(self, stamp: int) -> None:
         """Take the stamp of a depth image that came."""
         if self._depths and stamp < self._depths[-1] - STRANGE * SECOND:
             self._depths.clear()  # time went back
         self._came = self._clock()
+        if self._depths and stamp < max(self._depths):
+            self._disorder = self._came
         self._depths.append(stamp)
         for image, arrival in self._images:
             if abs(image - stamp) <= SAME * SECOND and self._came - arrival < self.limit:
@@ -77,15 +81,18 @@ class DepthWait:
 
     def _expected(self, stamp: int) -> bool:
         """Whether a depth image is likely to come that is nearer to the image than those here."""
-        if self.limit <= 0 or not self._depths or self._clock() - self._came > SILENT:
+        now = self._clock()
+        if self.limit <= 0 or not self._depths or now - self._came > SILENT or self.in_vain:
             return False
-        newest = max(self._depths)
-        ahead = (stamp - newest) / SECOND
-        if not SAME < ahead < STRANGE or self.in_vain:
+        if any(abs(depth - stamp) <= SAME * SECOND for depth in self._depths):
+            return False
+        ahead = (stamp - max(self._depths)) / SECOND
+        if abs(ahead) > STRANGE or (ahead < 0 and now - self._disorder > DISORDER):
             return False
         interval = self._interval()
         off = ahead % interval
-        return min(off, interval - off) < WORTH * ahead
+        # Depth at half the rate is as near to every second image before it as after it.
+        return min(off, interval - off) < (WORTH * ahead if ahead > 0 else SAME)
 
     def _interval(self) -> float:
         """Usual time between two depth images, s."""

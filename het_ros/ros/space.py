@@ -24,6 +24,7 @@ from het_ros.ros.stamps import SECOND
 from het_ros.ros.target_depth import TargetDepth
 from het_ros.tracking.box import Box
 
+MISSED = 5  # frames in a row without depth: that is no chance
 DEPTHS = 8  # depth images that are kept: one of them belongs to the image in work
 
 
@@ -42,6 +43,7 @@ class Space:
         self._hints = hints
         self._info: CameraInfo | None = None
         self._target = TargetDepth()
+        self._missed = 0
         self._depths: deque[Image] = deque(maxlen=DEPTHS)
         self._converted: tuple[Image, NDArray[float32]] | None = None
 
@@ -105,6 +107,7 @@ class Space:
         if depth_image is None:
             self._explain_no_depth(header)
             return None
+        self._missed = 0
         self._compare_frames(depth_image, header)
         try:
             metres = self._metres(depth_image)
@@ -170,7 +173,8 @@ class Space:
 
     def _explain_no_depth(self, header: Header) -> None:
         nearest, off = self._nearest_depth(header)
-        if nearest is not None and (self.seen(header) or off > STRANGE):  # else it may yet come
+        self._missed += 1
+        if nearest is not None and self._missed == MISSED:
             self._hints.once(
                 "depth stamp",
                 f"no ~/target_pose: the nearest depth image is {off:.3f} s off the image, and "
