@@ -20,7 +20,7 @@ from rclpy.exceptions import ParameterAlreadyDeclaredException
 from rclpy.node import Node
 from rclpy.qos import QoSProfile, ReliabilityPolicy
 
-from het_ros.ros.quality import overridable, override_name, subscription_events
+from het_ros.ros.quality import checked, overridable, override_name, subscription_events
 
 AUTO = "auto"
 RELIABILITIES = {
@@ -145,13 +145,17 @@ class OfferedSubscription:
                 self._take(message, info)
 
         # rclpy counts a callback's parameters to know whether it takes the second.
-        made = self._node.create_subscription(
-            self._kind,
-            self._topic,
-            on_message,
-            qos,
-            event_callbacks=subscription_events(self._node, self._topic),
-            qos_overriding_options=overridable(reliability=False),
+        made = checked(
+            lambda: self._node.create_subscription(
+                self._kind,
+                self._topic,
+                on_message,
+                qos,
+                event_callbacks=subscription_events(self._node, self._topic),
+                qos_overriding_options=overridable(reliability=False),
+            ),
+            self.topic,
+            "subscription",
         )
         return made
 

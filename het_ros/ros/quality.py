@@ -4,16 +4,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from enum import Enum
-from typing import Any
+from typing import Any, TypeVar
 
+from rcl_interfaces.msg import SetParametersResult
 from rclpy.duration import Duration
 from rclpy.event_handler import PublisherEventCallbacks, SubscriptionEventCallbacks
 from rclpy.node import Node
 from rclpy.qos import QoSPolicyKind, QoSProfile, qos_policy_name_from_kind
-from rclpy.qos_overriding_options import QoSOverridingOptions
+from rclpy.qos_overriding_options import InvalidQosOverridesError, QoSOverridingOptions
 
+Made = TypeVar("Made")
 POLICIES = (
     QoSPolicyKind.HISTORY,
     QoSPolicyKind.DEPTH,
@@ -33,7 +35,35 @@ def overridable(reliability: bool = True) -> QoSOverridingOptions:
         reliability: False where the caller has a parameter of its own for that.
     """
     kinds = [k for k in POLICIES if reliability or k is not QoSPolicyKind.RELIABILITY]
-    return QoSOverridingOptions(policy_kinds=kinds)
+    return QoSOverridingOptions(policy_kinds=kinds, callback=_fits)
+
+
+def _fits(qos: QoSProfile) -> SetParametersResult:
+    """Whether the middleware will take it: what it says itself helps nobody."""
+    fits = qos.depth >= 1
+    return SetParametersResult(successful=fits, reason="" if fits else "depth is 1 or more")
+
+
+def checked(make: Callable[[], Made], topic: str, end: str) -> Made:
+    """A publisher or subscription; its overrides may be wrong.
+
+    Args:
+        make: makes it.
+        topic: its full name.
+        end: "publisher" or "subscription".
+
+    Raises:
+        ValueError: an override is wrong; the text names it.
+    """
+    try:
+        return make()
+    except (RuntimeError, InvalidQosOverridesError) as error:
+        text = str(error).splitlines()[0]
+        known = [
+            f"{policy}: {', '.join(of)}" for policy, of in STRENGTHS.items() if policy in text
+        ]
+        more = f" ({known[0]})" if known else ""
+        raise ValueError(f"qos_overrides.{topic}.{end}: {text}{more}") from error
 
 
 def override_name(topic: str, end: str, policy: str) -> str:

@@ -24,9 +24,9 @@ from het_ros.ros.image_stream import NEWEST_ONLY, ImageStream
 from het_ros.ros.input_hints import InputHints
 from het_ros.ros.messages import BoxError
 from het_ros.ros.offers import OfferedSubscription
-from het_ros.ros.outputs import OUTPUTS, RELIABLE, Outputs, Tap
+from het_ros.ros.outputs import OUTPUTS, RELIABLE, Outputs, Tap, make_publisher
 from het_ros.ros.pursuit import Pursuit
-from het_ros.ros.quality import overridable, subscription_events
+from het_ros.ros.quality import checked, overridable, subscription_events
 from het_ros.ros.reports import Reports
 from het_ros.ros.space import Space
 from het_ros.ros.stamps import SECOND
@@ -109,12 +109,7 @@ class TrackerNode(TunedNode):
         self.configured.callback(self._outputs.destroy)
         self._make_pursuit()
         self.configured.callback(lambda: self._pursuit.drop("waiting for a box"))
-        self._diagnostics = self.create_publisher(
-            DiagnosticArray,
-            "/diagnostics",
-            copy(RELIABLE),
-            qos_overriding_options=overridable(),
-        )
+        self._diagnostics = make_publisher(self, DiagnosticArray, "/diagnostics")
         self.configured.callback(self.destroy_publisher, self._diagnostics)
         for kind, name, serve in (
             (Trigger, "~/reset", self._on_reset),
@@ -183,13 +178,17 @@ class TrackerNode(TunedNode):
         return timer
 
     def _subscribe(self, kind: Any, topic: str, callback: Any, qos: QoSProfile) -> None:
-        subscription = self.create_subscription(
-            kind,
-            topic,
-            callback,
-            copy(qos),  # overrides are written into it
-            event_callbacks=subscription_events(self, topic),
-            qos_overriding_options=overridable(),
+        subscription = checked(
+            lambda: self.create_subscription(
+                kind,
+                topic,
+                callback,
+                copy(qos),  # overrides are written into it
+                event_callbacks=subscription_events(self, topic),
+                qos_overriding_options=overridable(),
+            ),
+            self.resolve_topic_name(topic),
+            "subscription",
         )
         self.activated.callback(self.destroy_subscription, subscription)
 
