@@ -96,7 +96,9 @@ def test_a_camera_that_is_killed_and_comes_back(
     back = last / SECOND + gap
     camera_process(back)
     local_graph.spin_until(lambda: watcher.newest() > last, "images again")
-    said = status_values(watcher.got["status"][before])
+    # While the camera is away for long the node says so by itself, with no latency.
+    answers = map(status_values, watcher.got["status"][before:])
+    said = next(values for values in answers if float(values["latency_ms"]) > 0)
     if gap > 2:
         assert said["state"] == "LOST" and "no image for 5.0 s" in said["reason"]
         assert "send a new box" in said["reason"]
@@ -132,7 +134,8 @@ def test_a_tracker_that_is_killed_and_comes_back(processes, local_graph, sequenc
         assert status_values(camera.got["status"][-1])["state"] == "TRACKING"
         begin, *rest = tracker.log.read_text().splitlines()
         assert "active: images from /image, boxes on /tracker/init_box" in begin
-        assert len(rest) == 1 and "tracking started on" in rest[0]
+        said = [line for line in rest if "is asked for best_effort" not in line]
+        assert len(said) == 1 and "tracking started on" in said[0]
         names = (name for name, _ in camera.get_topic_names_and_types())
         seen.append({name for name in names if "tracker" in name})
         tracker.send_signal(signal.SIGKILL)
