@@ -95,10 +95,14 @@ def test_a_camera_that_is_killed_and_comes_back(
     assert tracker.poll() is None
     back = last / SECOND + gap
     camera_process(back)
-    local_graph.spin_until(lambda: watcher.newest() > last, "images again")
-    # While the camera is away for long the node says so by itself, with no latency.
-    answers = map(status_values, watcher.got["status"][before:])
-    said = next(values for values in answers if float(values["latency_ms"]) > 0)
+
+    def answers() -> list[dict[str, str]]:
+        # While the camera is away for long the node says so by itself, with no latency.
+        values = map(status_values, watcher.got["status"][before:])
+        return [one for one in values if float(one["latency_ms"]) > 0]
+
+    local_graph.spin_until(answers, "images again")
+    said = answers()[0]
     if gap > 2:
         assert said["state"] == "LOST" and "no image for 5.0 s" in said["reason"]
         assert "send a new box" in said["reason"]
