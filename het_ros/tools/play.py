@@ -31,7 +31,7 @@ LAST_ANSWER = 2.0  # s of silence after which no more answers are expected
 
 EXAMPLE = """example, in two terminals:
   ros2 run het_ros tracker --ros-args -p image_transport:=compressed
-  python -m het_ros.tools.play bags/follow_walk --out out/play
+  ros2 run het_ros play bags/follow_walk --out out/play
 
 Topics are remapped like any node's: add --ros-args -r /image:=/camera/image_raw
 """
