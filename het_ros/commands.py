@@ -59,10 +59,10 @@ def __getattr__(name: str) -> Callable[[], int]:
     """The main function of a command, for the entry point ``het_ros.commands:NAME``."""
     if name not in COMMANDS:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    return partial(run, name)
+    return partial(run_command, name)
 
 
-def run(name: str) -> int:
+def run_command(name: str) -> int:
     """Run a command with the process's arguments; 2 where a package of it is not installed."""
     try:
         with ended_by_ctrl_c():
