@@ -13,8 +13,6 @@ from collections.abc import Callable
 from functools import partial
 from importlib import import_module
 
-from het_ros.ros.start import ended_by_ctrl_c
-
 COMMANDS = {
     "tracker": "het_ros.ros.tracker",
     "follower_example": "het_ros.ros.follower_example",
@@ -64,6 +62,8 @@ def __getattr__(name: str) -> Callable[[], int]:
 
 def run_command(name: str) -> int:
     """Run a command with the process's arguments; 2 where a package of it is not installed."""
+    from het_ros.ros.start import ended_by_ctrl_c  # setup.py reads the table without the package
+
     try:
         with ended_by_ctrl_c():
             module = import_module(COMMANDS[name])

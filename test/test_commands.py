@@ -103,7 +103,7 @@ def test_a_missing_package_is_one_line_with_the_command_that_installs_it(missing
 
 
 def test_the_node_imports_nothing_of_the_tools():
-    tools = ["tqdm", "rosbags", "av", "jinja2", "joblib", "yaml", "hypothesis", "distributed"]
+    tools = ["tqdm", "rosbags", "av", "jinja2", "joblib", "hypothesis", "distributed"]
     for module in ("het_ros.ros.tracker_node", "het_ros.ros.follower_example"):
         ended = without(tools, "tracker", f"import {module}")
         assert ended.returncode == 0, ended.stderr

@@ -126,9 +126,15 @@ def test_pip_knows_how_to_build_it():
     assert '[build-system]\nrequires = ["setuptools' in (ROOT / "pyproject.toml").read_text()
 
 
-def test_the_changelog_is_one_for_catkin():
+def test_the_changelog_is_one_for_catkin(tmp_path):
+    """What ``catkin_prepare_release`` makes of it is what bloom reads."""
     changelog = pytest.importorskip("catkin_pkg.changelog")
-    read = changelog.get_changelog_from_path(str(ROOT))
-    (version, _, entries), *_ = list(read.foreach_version())
-    assert version.lower() == "forthcoming" or version == PACKAGE.findtext("version")
-    assert entries
+    version = pytest.importorskip("catkin_pkg.package_version")
+    file = tmp_path / "CHANGELOG.rst"
+    file.write_text((ROOT / "CHANGELOG.rst").read_text())
+    read = changelog.get_changelog_from_path(str(tmp_path))
+    version.update_changelog_sections({"het_ros": (str(file), read, "Forthcoming")}, "9.8.7")
+    assert "9.8.7" in file.read_text()
+    released = changelog.get_changelog_from_path(str(tmp_path))
+    ((number, _, entries),) = released.foreach_version()
+    assert number == "9.8.7" and entries

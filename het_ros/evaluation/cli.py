@@ -29,7 +29,8 @@ EXAMPLE = """\
 examples:
   ros2 run het_ros evaluate --data ../shared/sequences --out out/dev --seeds 3
   ros2 run het_ros evaluate --data ../shared/sequences --out out/try \\
-      --sequences Crossing,Woman --timing 0 --trackers het,het:sub_patches=5,small@het:small.yaml,csrt
+      --sequences Crossing,Woman --timing 0 \\
+      --trackers het,het:sub_patches=5,small@het:small.yaml,csrt
 """
 
 

@@ -20,7 +20,8 @@ def qos(topic: str, override: str) -> tuple[str, ...]:
 
 def test_follows_what_another_process_sends(processes, local_graph, made_footage):
     frames, box = made_footage
-    tracker = processes("tracker", "--ros-args", "-r", "image:=/camera/image_raw")
+    remap, patient = ("-r", "image:=/camera/image_raw"), ("-p", "image_timeout:=0.0")
+    tracker = processes("tracker", "--ros-args", *remap, *patient)
     camera = local_graph.add(
         Camera(
             context=local_graph.context, cli_args=["--ros-args", "-r", "image:=/camera/image_raw"]
@@ -72,7 +73,7 @@ def test_a_signal_ends_it_cleanly(processes, local_graph, stop):
         (("--ros-args", "-p", "image_transport:=smoke"), "raw, compressed"),
         (("--fast",), "--fast"),
         (qos("image", "reliability:=foo"), "auto, reliable, best_effort, not 'foo'"),
-        (qos("image", "depth:=0"), "qos_overrides./image.subscription"),
+        (qos("image", "depth:=-1"), "qos_overrides./image.subscription"),
         (qos("camera_info", "reliability:=foo"), "best_effort, reliable"),
         (("--ros-args", "-p", "garbage"), "garbage"),
         (("--ros-args", "--params-file", "missing.yaml"), "missing.yaml"),
