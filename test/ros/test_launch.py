@@ -125,7 +125,9 @@ def test_the_node_starts_with_what_they_pass(processes, local_graph, targets):
         lambda: camera.images.get_subscription_count() > 0, "the node on the camera's topic"
     )
     local_graph.spin_until(
-        lambda: {(name, "/robot1") for name in targets.split(",")}
-        <= set(camera.get_node_names_and_namespaces()),
+        lambda: (
+            {(name, "/robot1") for name in targets.split(",")}
+            <= set(camera.get_node_names_and_namespaces())
+        ),
         "its name",
     )
