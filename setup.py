@@ -59,6 +59,7 @@ EXTRAS = {
         "mypy>=1.10",
         "import-linter>=2.0",
         "catkin-pkg>=1.0",
+        "rosdep>=0.22",
         "distributed>=2023.1",
         *SCORING,
     ],
