@@ -79,8 +79,7 @@ def workspace(tmp_path):
         "ROSDISTRO_INDEX_URL": f"file://{tmp_path}/index.yaml",
         "ROS_DISTRO": "jazzy",
         "ROS_PYTHON_VERSION": "3",
-        "AMENT_PREFIX_PATH": "",  # nothing is installed
-        "ROS_PACKAGE_PATH": "",
+        "AMENT_PREFIX_PATH": str(tmp_path),  # nothing is installed there
     }
     subprocess.run(
         ["rosdep", "update", "--rosdistro", "jazzy"],
