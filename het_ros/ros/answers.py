@@ -32,6 +32,7 @@ from het_ros.tracking.box import Box
 from het_ros.tracking.estimate import Estimate, State
 
 SEEN = (State.TRACKING, State.COASTING)
+LARGEST_STAMP = (2**31 - 1) * SECOND  # ns that a header holds
 MOST_OWED = 8  # frames whose depth may still come
 
 
@@ -82,7 +83,8 @@ class Answers:
         header = Header(stamp=now)
         if newest is not None:
             passed = round((time.monotonic() - newest.arrival) * SECOND)
-            header = header_of(stamp_ns(newest.header) + passed, newest.header.frame_id)
+            stamp = min(stamp_ns(newest.header) + passed, LARGEST_STAMP)
+            header = header_of(stamp, newest.header.frame_id)
         self._tell(status, header)
         if newest is not None:
             self._draw(newest, header, status)

@@ -140,8 +140,9 @@ class OfferedSubscription:
         def on_message(message: Any, info: dict[str, Any]) -> None:
             if made is self.subscription:
                 self._retire()
-            if info.get("source_timestamp") != self._newest:
-                self._newest = info.get("source_timestamp")
+            sent = info.get("source_timestamp")
+            if sent is None or sent != self._newest:  # else both subscriptions heard it
+                self._newest = sent
                 self._take(message, info)
 
         # rclpy counts a callback's parameters to know whether it takes the second.
