@@ -18,6 +18,7 @@ COMMANDS = {
     "run": "het_ros.tools.run",
     "evaluate": "het_ros.evaluation.cli",
     "follower_example": "het_ros.ros.follower_example",
+    "operator": "het_ros.operator.main",
 }
 
 # What scoring, tables and pictures of `evaluate` and `bench` need beside a cv2.
@@ -46,6 +47,8 @@ EXTRAS = {
     "bags": ["rosbags>=0.10,<0.12", "tqdm>=4.60", "matplotlib>=3.5", "av>=10"],
     # Comparison with OpenCV's trackers, in an environment of its own.
     "evaluate": ["opencv-contrib-python-headless>=4.6", *SCORING],
+    # The page on which a target is picked; segno draws its address as a QR code.
+    "operator": ["aiohttp>=3.8", "segno>=1.5"],
     # Scoring on a Dask cluster.
     "cluster": ["distributed>=2023.1"],
     # colcon still needs `setup.py develop`, which setuptools 80 took away.
@@ -59,6 +62,7 @@ EXTRAS = {
         "import-linter>=2.0",
         "catkin-pkg>=1.0",
         "distributed>=2023.1",
+        "playwright>=1.40",  # drives the system's Chromium; brings none
         *SCORING,
     ],
 }
@@ -73,7 +77,7 @@ setup(
     name=NAME,
     version="0.1.0",
     packages=find_packages(include=[NAME, f"{NAME}.*"]),
-    package_data={NAME: ["py.typed", "evaluation/templates/*"]},
+    package_data={NAME: ["py.typed", "evaluation/templates/*", "operator/static/*"]},
     data_files=[
         ("share/ament_index/resource_index/packages", [f"resource/{NAME}"]),
         (f"share/{NAME}", ["package.xml"]),

@@ -28,13 +28,22 @@ class Recorder:
         node: makes the subscriptions; somebody spins it.
         bag: open bag to write to.
         tracker: full name of the tracker's node.
+        on_failure: is called when the bag takes no more, instead of an error in the callback.
 
     Attributes:
         answered: stamps (ns) of the frames for which a status came.
     """
 
-    def __init__(self, node: Node, bag: BagWriter, tracker: str = DEFAULT_TRACKER) -> None:
+    def __init__(
+        self,
+        node: Node,
+        bag: BagWriter,
+        tracker: str = DEFAULT_TRACKER,
+        on_failure: Callable[[OSError], None] | None = None,
+    ) -> None:
+        self._node = node
         self._bag = bag
+        self._on_failure = on_failure
         self.answered: set[int] = set()
         self._status_topic = f"{tracker}/status"
         self._subscriptions = [
@@ -49,6 +58,12 @@ class Recorder:
             for s in self._subscriptions
         )
 
+    def close(self) -> None:
+        """Take the subscriptions away; the bag is the caller's."""
+        for subscription in self._subscriptions:
+            self._node.destroy_subscription(subscription)
+        self._subscriptions.clear()
+
     def _subscribe(self, node: Node, topic: str, kind: str) -> Any:
         self._bag.add_topic(topic, kind)
         callback = self._writing(topic, kind)
@@ -57,7 +72,13 @@ class Recorder:
     def _writing(self, topic: str, kind: str) -> Callable[[bytes], None]:
         def write(cdr: bytes) -> None:
             stamp = header_stamp(cdr)
-            self._bag.write_cdr(topic, kind, cdr, stamp)
+            try:
+                self._bag.write_cdr(topic, kind, cdr, stamp)
+            except OSError as error:
+                if self._on_failure is None:
+                    raise
+                self._on_failure(error)
+                return
             if topic == self._status_topic:
                 self.answered.add(stamp)
 
