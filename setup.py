@@ -48,7 +48,7 @@ EXTRAS = {
     # Comparison with OpenCV's trackers, in an environment of its own.
     "evaluate": ["opencv-contrib-python-headless>=4.6", *SCORING],
     # The page on which a target is picked; segno draws its address as a QR code.
-    "operator": ["aiohttp>=3.8", "segno>=1.5"],
+    "operator": ["aiohttp>=3.8", "jsonschema>=4.10", "segno>=1.4"],
     # Scoring on a Dask cluster.
     "cluster": ["distributed>=2023.1"],
     # colcon still needs `setup.py develop`, which setuptools 80 took away.

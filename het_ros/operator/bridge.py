@@ -25,6 +25,8 @@ from het_ros.ros.messages import header_of, polygon_from_box
 from het_ros.tracking.box import Box
 
 WARN = 30  # level of rcl_interfaces/Log
+LONGEST_LINE = 1000  # letters
+LATEST = 2**31 * 10**9  # ns: stamps end there
 RESTORE = 3.0  # s after a pick, in which the tracker takes the box before it forgets old images
 
 
@@ -54,6 +56,7 @@ class Bridge:
         self._config = config
         self._viewers: dict[Viewer, str] = {}
         self._picking: dict[Viewer, str] = {}
+        self._restoring: set[asyncio.Future[None]] = set()
         self._watches: dict[str, Watch] = {}
         self._publishers: dict[str, Any] = {}
         self._log: Any = None
@@ -85,58 +88,62 @@ class Bridge:
         """Let the tracker keep its images while a viewer draws a box on one of them."""
         if not on:
             self._stop_picking(viewer)
-        elif self._config.keep_seconds and viewer not in self._picking:
+        elif self._config.keep_seconds and tracker in self._watches:
             first = tracker not in self._picking.values()
             self._picking[viewer] = tracker
             if first:
                 await self._settings.raise_ring(tracker, self._config.keep_seconds)
 
-    async def pick(self, tracker: str, box: list[float], stamp: int, replace: bool) -> Answer:
+    async def pick(self, tracker: str, box: list[float], stamp: str, replace: bool) -> Answer:
         """Start a track on the image of that stamp, ns; a running one is replaced on demand."""
 
         def publish() -> Answer:
-            watch = self._watches.get(tracker)
-            publisher = self._publishers.get(tracker)
+            watch, publisher = self._watches.get(tracker), self._publishers.get(tracker)
             if watch is None or publisher is None or not publisher.get_subscription_count():
                 return Answer(False, f"{tracker or 'no tracker'} takes no boxes now")
             if watch.tracks.state in WITH_BOX and not replace:
                 return Answer(False, "a track is running: replace it?")
-            publisher.publish(polygon_from_box(Box(*map(float, box)), header_of(stamp)))
+            publisher.publish(polygon_from_box(Box(*map(float, box)), header_of(int(stamp))))
             return Answer(True, "the box is sent")
 
+        if int(stamp) >= LATEST:
+            return Answer(False, "no image has such a stamp")
         return await self._ros.do(publish)
 
     async def reset(self, tracker: str) -> Answer:
         """Let the tracker forget its target."""
-        return await self._ask(Trigger, f"{tracker}/reset", Trigger.Request())
+        return await self._ask(Trigger, tracker, "reset", Trigger.Request())
 
     async def enable(self, tracker: str, on: bool) -> Answer:
         """Let the tracker go on, or pause it."""
-        return await self._ask(SetBool, f"{tracker}/enable", SetBool.Request(data=on))
+        return await self._ask(SetBool, tracker, "enable", SetBool.Request(data=on))
 
     async def record(self, tracker: str, on: bool) -> Answer:
         """Start or stop the recording of what a tracker publishes."""
-        if tracker not in await self._ros.do(lambda: find_trackers(self._node)):
+        if on and not await self._is_there(tracker):
             return Answer(False, f"there is no tracker {tracker}")
         recordings = self._recordings
-        return await self._ros.do(
-            lambda: recordings.start(tracker) if on else recordings.stop(tracker)
-        )
+        work = recordings.start if on else recordings.stop
+        return await self._ros.do(lambda: work(tracker))
 
     async def parameters(self, tracker: str) -> dict[str, Any]:
         """The message with the parameters that can be changed while the tracker runs."""
-        found = await self._settings.read(tracker)
-        return {"type": "parameters", "tracker": tracker, "parameters": found}
+        there = await self._is_there(tracker)
+        found = await self._settings.read(tracker) if there else []
+        return {"type": "parameters", "parameters": found}
 
-    async def set(self, tracker: str, name: str, value: Any) -> Answer:
+    async def set(self, tracker: str, name: str, value: bool | float) -> Answer:
         """Change one parameter."""
+        if not await self._is_there(tracker):
+            return Answer(False, f"there is no tracker {tracker}")
         return await self._settings.write(tracker, name, value)
 
     # In the node's thread -------------------------------------------------------------------
 
     def _match(self) -> None:
-        """Watch what is looked at, and nothing else."""
-        wanted = {tracker for tracker in tuple(self._viewers.values()) if tracker}
+        """Watch what is looked at, if it is there or was: names come from outside."""
+        names = {tracker for tracker in tuple(self._viewers.values()) if tracker}
+        wanted = names & {*(find_trackers(self._node) if names else ()), *self._watches}
         for tracker in self._watches.keys() - wanted:
             self._watches.pop(tracker).close()
             self._node.destroy_publisher(self._publishers.pop(tracker))
@@ -177,7 +184,7 @@ class Bridge:
         return lambda thing: self._ros.in_loop(hand_over, thing)
 
     def _news(self) -> tuple[list[str], dict[str, dict[str, Any]], dict[str, str]]:
-        """Names of the trackers, their recordings, and where the watched ones' images come from."""
+        """Names of the trackers, their recordings, and the topics of the watched ones' images."""
         names = find_trackers(self._node)
         self._match()
         recordings = {name: self._recordings.state(name) for name in {*names, *self._watches}}
@@ -201,16 +208,25 @@ class Bridge:
     def _stop_picking(self, viewer: Viewer) -> None:
         tracker = self._picking.pop(viewer, None)
         if tracker is not None and tracker not in self._picking.values():
-            asyncio.get_running_loop().call_later(RESTORE, self._restore, tracker)
+            task = asyncio.ensure_future(self._restore(tracker))
+            self._restoring.add(task)
+            task.add_done_callback(self._restoring.discard)
 
-    def _restore(self, tracker: str) -> None:
+    async def _restore(self, tracker: str) -> None:
+        """Let the tracker keep as few images as before, unless somebody picks again."""
+        await asyncio.sleep(RESTORE)
         if tracker not in self._picking.values():
-            asyncio.ensure_future(self._settings.restore_ring(tracker))
+            await self._settings.restore_ring(tracker)
 
-    async def _ask(self, kind: Any, name: str, request: Any) -> Answer:
-        """Call a service that answers with success and message."""
+    async def _is_there(self, tracker: str) -> bool:
+        return tracker in await self._ros.do(lambda: find_trackers(self._node))
+
+    async def _ask(self, kind: Any, tracker: str, verb: str, request: Any) -> Answer:
+        """Call a tracker's service that answers with success and message."""
+        if not await self._is_there(tracker):
+            return Answer(False, f"there is no tracker {tracker}")
         try:
-            response = await self._ros.call(kind, name, request)
+            response = await self._ros.call(kind, f"{tracker}/{verb}", request)
         except TimeoutError as error:
             return Answer(False, str(error))
         return Answer(response.success, response.message)

@@ -9,11 +9,11 @@ import json
 import time
 from collections import deque
 from contextlib import suppress
-from typing import Any, Protocol
+from typing import Any
 
 from aiohttp import WSCloseCode, WSMsgType, web
 
-from het_ros.operator.bridge import Viewer
+from het_ros.operator.bridge import Bridge
 from het_ros.operator.messages import Answer, MessageError, parse
 from het_ros.operator.pictures import Picture
 from het_ros.ros.images import ImageError
@@ -22,22 +22,8 @@ MOST_TEXTS = 300  # that wait for a slow browser; the oldest go first
 ON_THE_WAY = 2  # images that a browser has not shown yet
 BURST, A_SECOND = 200, 100  # messages of one browser
 COMMAND = 10  # a command counts as so many messages
-CHEAP = ("shown", "ping")
+MOST_COMMANDS = 4  # at once
 MOST_FAULTS = 20
-
-
-class Bridge(Protocol):
-    """What a browser can ask for; :class:`het_ros.operator.bridge.Bridge` says what it does."""
-
-    def look(self, viewer: Viewer, tracker: str) -> None: ...  # noqa: D102
-    def leave(self, viewer: Viewer) -> None: ...  # noqa: D102
-    async def freeze(self, viewer: Viewer, tracker: str, on: bool) -> None: ...  # noqa: D102
-    async def pick(self, tracker: str, box: list[float], stamp: int, replace: bool) -> Answer: ...
-    async def reset(self, tracker: str) -> Answer: ...  # noqa: D102
-    async def enable(self, tracker: str, on: bool) -> Answer: ...  # noqa: D102
-    async def record(self, tracker: str, on: bool) -> Answer: ...  # noqa: D102
-    async def parameters(self, tracker: str) -> dict[str, Any]: ...  # noqa: D102
-    async def set(self, tracker: str, name: str, value: Any) -> Answer: ...  # noqa: D102
 
 
 class Allowance:
@@ -70,6 +56,8 @@ class Client:
         self._on_the_way = 0
         self._news = asyncio.Event()
         self._allowance = Allowance()
+        self._commands: set[asyncio.Future[None]] = set()
+        self._knows_parameters = False
         self._faults = 0
 
     def tell(self, message: dict[str, Any]) -> None:
@@ -88,13 +76,13 @@ class Client:
         sending = asyncio.ensure_future(self._send())
         try:
             async for message in self._socket:
-                if message.type is not WSMsgType.TEXT or not await self._on_text(message.data):
+                if message.type is not WSMsgType.TEXT or not self._on_text(message.data):
                     break
         finally:
             self._bridge.leave(self)
-            sending.cancel()
-            with suppress(asyncio.CancelledError, OSError, RuntimeError):
-                await sending
+            for task in (sending, *self._commands):
+                task.cancel()
+            await asyncio.gather(sending, *self._commands, return_exceptions=True)
             with suppress(OSError, RuntimeError):
                 await self._socket.close(code=WSCloseCode.POLICY_VIOLATION)
 
@@ -115,7 +103,7 @@ class Client:
                 await self._socket.send_bytes(data)
             self._news.set()
 
-    async def _on_text(self, text: str) -> bool:
+    def _on_text(self, text: str) -> bool:
         """Do what a message asks for; False where this browser is to be thrown out."""
         try:
             message = parse(text)
@@ -124,48 +112,43 @@ class Client:
             self.tell(Answer(False, str(error)).message("unknown"))
             return self._faults < MOST_FAULTS and self._allowance.take(COMMAND)
         kind = message.pop("type")
-        if not self._allowance.take(1 if kind in CHEAP else COMMAND):
-            return False
-        answer = await getattr(self, f"_do_{kind}")(**message)
-        if answer is not None:
+        if kind == "shown":
+            self._on_the_way = max(self._on_the_way - 1, 0)
+            self._news.set()
+        elif kind == "ping":
+            self.tell({"type": "pong", "now": time.time(), **message})
+        else:
+            self._start(kind, message)
+            return self._allowance.take(COMMAND)
+        return self._allowance.take(1)
+
+    def _start(self, kind: str, message: dict[str, Any]) -> None:
+        """Do a command beside the others: a tracker that does not answer holds up nothing."""
+        if len(self._commands) >= MOST_COMMANDS:
+            self.tell(Answer(False, "too much at once: try again").message(kind))
+            return
+        command = asyncio.ensure_future(self._do(kind, message))
+        self._commands.add(command)
+        command.add_done_callback(self._commands.discard)
+
+    async def _do(self, kind: str, message: dict[str, Any]) -> None:
+        bridge, tracker = self._bridge, self._tracker
+        if kind == "view":
+            await self._do_view(**message)
+        elif kind == "freeze":
+            await bridge.freeze(self, tracker, message["on"])
+        else:
+            answer = await getattr(bridge, kind)(tracker, **message)
             self.tell(answer.message(kind))
-        return True
+        if kind == "set":
+            self.tell(await bridge.parameters(tracker))
 
-    async def _do_view(self, tracker: str, width: int, quality: int) -> None:
-        self._width, self._quality = width, quality
+    async def _do_view(self, tracker: str, width: float, quality: float) -> None:
+        self._width, self._quality = int(width), int(quality)
         if tracker != self._tracker:
-            self._tracker, self._picture, self._on_the_way = tracker, None, 0
-            self._bridge.look(self, tracker)
-            if tracker:
-                self.tell(await self._bridge.parameters(tracker))
-
-    async def _do_shown(self) -> None:
-        self._on_the_way = max(self._on_the_way - 1, 0)
-        self._news.set()
-
-    async def _do_ping(self, time: float) -> None:
-        self.tell({"type": "pong", "time": time, "now": _now()})
-
-    async def _do_freeze(self, on: bool) -> None:
-        await self._bridge.freeze(self, self._tracker, on)
-
-    async def _do_pick(self, box: list[float], stamp: str, replace: bool) -> Answer:
-        return await self._bridge.pick(self._tracker, box, int(stamp), replace)
-
-    async def _do_reset(self) -> Answer:
-        return await self._bridge.reset(self._tracker)
-
-    async def _do_enable(self, on: bool) -> Answer:
-        return await self._bridge.enable(self._tracker, on)
-
-    async def _do_record(self, on: bool) -> Answer:
-        return await self._bridge.record(self._tracker, on)
-
-    async def _do_set(self, name: str, value: Any) -> Answer:
-        answer = await self._bridge.set(self._tracker, name, value)
-        self.tell(await self._bridge.parameters(self._tracker))
-        return answer
-
-
-def _now() -> float:
-    return time.time()
+            self._tracker, self._picture, self._knows_parameters = tracker, None, False
+        self._bridge.look(self, tracker)
+        if tracker and not self._knows_parameters:
+            found = await self._bridge.parameters(tracker)
+            self._knows_parameters = bool(found["parameters"])
+            self.tell(found)

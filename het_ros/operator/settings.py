@@ -8,11 +8,14 @@ from typing import Any
 
 from rcl_interfaces.msg import Parameter, ParameterDescriptor, ParameterType, ParameterValue
 from rcl_interfaces.srv import DescribeParameters, GetParameters, ListParameters, SetParameters
+from rclpy.parameter import Parameter as RclpyParameter
 from rclpy.parameter import parameter_value_to_python
 
 from het_ros.operator.messages import Answer
 from het_ros.operator.ros_thread import RosThread
 
+BOOL = ParameterType.PARAMETER_BOOL
+INTEGER, DOUBLE = ParameterType.PARAMETER_INTEGER, ParameterType.PARAMETER_DOUBLE
 RING = "ring_seconds"
 # Those that a tracker does not have are left out.
 WORTH_IT = (
@@ -55,7 +58,7 @@ class LiveSettings:
         ]
 
     async def write(self, tracker: str, name: str, value: Any) -> Answer:
-        """Set one parameter of those that :meth:`read` gives; a refusal has the tracker's words."""
+        """Set one parameter that :meth:`read` gives; a refusal has the tracker's words."""
         if name not in WORTH_IT:
             return Answer(False, f"{name} is not changed from here")
         try:
@@ -95,18 +98,19 @@ def _described(descriptor: ParameterDescriptor, value: Any) -> dict[str, Any]:
         "help": descriptor.description,
         "low": low,
         "high": high,
-        "whole": descriptor.type == ParameterType.PARAMETER_INTEGER,
+        "whole": descriptor.type == INTEGER,
     }
 
 
-def _like(before: ParameterValue, value: Any) -> ParameterValue:
+def _like(before: ParameterValue, value: bool | float) -> ParameterValue:
     """A value of the type that the parameter has; raises ValueError where it does not fit."""
-    kind = before.type
-    number = isinstance(value, (int, float)) and not isinstance(value, bool)
-    if kind == ParameterType.PARAMETER_BOOL and isinstance(value, bool):
-        return ParameterValue(type=kind, bool_value=value)
-    if kind == ParameterType.PARAMETER_INTEGER and number and int(value) == value:
-        return ParameterValue(type=kind, integer_value=int(value))
-    if kind == ParameterType.PARAMETER_DOUBLE and number:
-        return ParameterValue(type=kind, double_value=float(value))
-    raise ValueError(f"{value!r} is of another type than the parameter")
+    whole = isinstance(value, bool) or int(value) == value
+    if (before.type == BOOL) is not isinstance(value, bool) or (
+        before.type == INTEGER and not (whole and abs(value) < 2**63)
+    ):
+        raise ValueError(f"{value!r} is of another type than the parameter")
+    if before.type == DOUBLE:
+        value = float(value)
+    elif before.type == INTEGER:
+        value = int(value)
+    return RclpyParameter("", value=value).get_parameter_value()

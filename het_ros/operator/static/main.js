@@ -20,7 +20,8 @@ let tracker = sessionStorage.getItem("tracker") ?? "";
 let state = "";
 let goodAt = 0;
 let pictureAt = 0;
-let from = "";
+let from = ""; // topic of the camera
+let there = false; // whether the tracker is in the graph
 let answered = null; // waits for the answer to a pick
 let audio = null;
 
@@ -151,6 +152,8 @@ on("closed", (why) => {
 });
 on("trackers", ({ names, images }) => {
   choose(showTrackers(names, tracker));
+  if (names.includes(tracker) && !there) look(); // it has come: ask for its parameters
+  there = names.includes(tracker);
   from = images;
 });
 on("image", (image) => {

@@ -123,17 +123,19 @@ export class View {
     this.#drawPath(colour);
     if (!box) return;
     // The answer for the picture may still be on its way: go on from the last one until it is here.
-    const late = Math.min(Math.max(seconds(shown.stamp) - seconds(stamp), 0), AHEAD);
-    const [vx, vy] = velocity ?? [0, 0];
+    const late = Math.max(seconds(shown.stamp) - seconds(stamp), 0);
+    const behind = late > AHEAD; // the tracker is catching up: its box is where the target was
+    const [vx, vy] = velocity && !behind ? velocity : [0, 0];
     const [x, y, w, h] = box;
     const here = [x + vx * late, y + vy * late, w, h];
-    this.#rectangle(here, colour, state === "COASTING" ? [8, 6] : []);
+    this.#rectangle(here, colour, behind || state === "COASTING" ? [8, 6] : []);
     const [ax, ay] = [vx * AHEAD, vy * AHEAD];
     if (Math.hypot(ax, ay) > 0.15 * Math.sqrt(w * h)) {
       this.#rectangle([here[0] + ax, here[1] + ay, w, h], colour, [2, 6]);
       this.#arrow(here[0] + w / 2, here[1] + h / 2, ax, ay, colour);
     }
-    this.#word(`${state} ${score.toFixed(2)}`, here, colour);
+    const lag = behind ? `, ${late.toFixed(1)} s behind` : "";
+    this.#word(`${state} ${score.toFixed(2)}${lag}`, here, colour);
   }
 
   #drawPath(colour) {
