@@ -74,8 +74,8 @@ class Recordings:
         """The message that tells of a tracker's recording; one that is too large is ended."""
         path, size = "", 0
         if tracker in self._open:
-            path = str(self._open[tracker][0].path)
-            size = sum(f.stat().st_size for f in Path(path).glob("*.mcap"))
+            bag, recorder = self._open[tracker]
+            path, size = str(bag.path), recorder.size
             if size > self._most:
                 self._node.get_logger().warning(f"{self.stop(tracker).text}: it is full")
         on = tracker in self._open

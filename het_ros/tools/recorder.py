@@ -32,6 +32,7 @@ class Recorder:
 
     Attributes:
         answered: stamps (ns) of the frames for which a status came.
+        size: bytes of the messages that were recorded.
     """
 
     def __init__(
@@ -45,6 +46,7 @@ class Recorder:
         self._bag = bag
         self._on_failure = on_failure
         self.answered: set[int] = set()
+        self.size = 0
         self._status_topic = f"{tracker}/status"
         self._subscriptions = [
             self._subscribe(node, f"{tracker}/{name}", kind) for name, kind in OUTPUT_TYPES.items()
@@ -79,6 +81,7 @@ class Recorder:
                     raise
                 self._on_failure(error)
                 return
+            self.size += len(cdr)
             if topic == self._status_topic:
                 self.answered.add(stamp)
 

@@ -68,9 +68,11 @@ def test_without_the_token_there_is_no_socket(serve):
 )
 def test_only_the_page_s_files_are_given_out(server, path):
     async def get():
-        async with aiohttp.ClientSession() as session:
-            async with session.get(f"{server.url}{path}") as response:
-                return response.status
+        async with (
+            aiohttp.ClientSession() as session,
+            session.get(f"{server.url}{path}") as response,
+        ):
+            return response.status
 
     assert run(get()) == 404
 
@@ -80,9 +82,10 @@ def test_no_more_than_max_clients(serve):
 
     async def connect():
         async with aiohttp.ClientSession() as session:
-            for _ in range(2):
-                await session.ws_connect(f"{server.url}socket")
-            return await status_of(server)
+            both = [await session.ws_connect(f"{server.url}socket") for _ in range(2)]
+            refused = await status_of(server)
+            assert not any(socket.closed for socket in both)
+            return refused
 
     assert run(connect()) == 503
     wait(lambda: server.server.clients == 0, "both have gone")
@@ -94,23 +97,25 @@ def test_what_the_server_sends_is_as_the_schema_says(server):
 
     async def listen():
         kinds = set()
-        async with aiohttp.ClientSession() as session:
-            async with session.ws_connect(f"{server.url}socket") as socket:
-                requests = [VIEW, {"type": "ping", "time": 1.5}, {"type": "reset"}]
-                requests += [{"type": "record", "on": True}, {"type": "nonsense"}]
-                for request in requests:
-                    check.validate(request) if request["type"] != "nonsense" else None
-                    await socket.send_json(request)
-                while len(kinds) < 7:
-                    message = await socket.receive()
-                    if message.type is aiohttp.WSMsgType.BINARY:
-                        end = 4 + int.from_bytes(message.data[:4], "little")
-                        told = json.loads(message.data[4:end])
-                        await socket.send_json({"type": "shown"})
-                    else:
-                        told = json.loads(message.data)
-                    check.validate(told)
-                    kinds.add(told["type"])
+        async with (
+            aiohttp.ClientSession() as session,
+            session.ws_connect(f"{server.url}socket") as socket,
+        ):
+            requests = [VIEW, {"type": "ping", "time": 1.5}, {"type": "reset"}]
+            requests += [{"type": "record", "on": True}, {"type": "nonsense"}]
+            for request in requests:
+                check.validate(request) if request["type"] != "nonsense" else None
+                await socket.send_json(request)
+            while len(kinds) < 7:
+                message = await socket.receive()
+                if message.type is aiohttp.WSMsgType.BINARY:
+                    end = 4 + int.from_bytes(message.data[:4], "little")
+                    told = json.loads(message.data[4:end])
+                    await socket.send_json({"type": "shown"})
+                else:
+                    told = json.loads(message.data)
+                check.validate(told)
+                kinds.add(told["type"])
         return kinds
 
     assert run(listen()) == {

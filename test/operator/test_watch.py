@@ -14,7 +14,7 @@ STATUS = {"state": "TRACKING", "score": 0.9}
 PARTS = ({"box": [1, 2, 3, 4]}, {"velocity": [5, 6]}, STATUS)
 
 
-@pytest.mark.parametrize("order", itertools.permutations(PARTS))
+@pytest.mark.parametrize("order", list(itertools.permutations(PARTS)))
 def test_a_frame_is_told_when_its_last_part_has_come(order):
     tracks = Tracks()
     told = [tracks.add(7, **parts) for parts in order]

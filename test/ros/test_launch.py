@@ -46,6 +46,7 @@ def without_launch(monkeypatch):
 
     kinds = {
         "launch": ["LaunchDescription"],
+        "launch.conditions": ["IfCondition"],
         "launch.actions": ["DeclareLaunchArgument"],
         "launch.substitutions": ["LaunchConfiguration", "PathJoinSubstitution"],
         "launch_ros": [],
@@ -64,21 +65,22 @@ def test_the_python_file_loads_where_launch_is_installed():
 
 def test_both_files_say_the_same(without_launch):
     (entities,) = load_python().generate_launch_description().args
-    *arguments, node = entities
+    *arguments, node, page = entities
     in_python = {a.args[0]: (a.default_value, a.description) for a in arguments}
     in_xml = {a.get("name"): (a.get("default"), a.get("description")) for a in XML.iter("arg")}
     assert in_python.pop("params_file")[0].args[0][1:] == ["config", "tracker.yaml"]
     assert in_xml.pop("params_file")[0] == "$(find-pkg-share het_ros)/config/tracker.yaml"
     assert in_python == in_xml
 
-    element = XML.find("node")
-    assert (node.package, node.executable) == (element.get("pkg"), element.get("exec"))
-    remaps = {source: target.args[0] for source, target in node.remappings}
-    assert remaps == {r.get("from"): inner(r.get("to")) for r in element.iter("remap")}
-    set_here = {
-        p.get("name"): inner(p.get("value")) for p in element.iter("param") if p.get("name")
-    }
-    assert {name: value.args[0] for name, value in node.parameters[1].items()} == set_here
+    for made, element in zip((node, page), XML.iter("node"), strict=True):
+        assert (made.package, made.executable) == (element.get("pkg"), element.get("exec"))
+        remaps = {source: target.args[0] for source, target in vars(made).get("remappings", ())}
+        assert remaps == {r.get("from"): inner(r.get("to")) for r in element.iter("remap")}
+        set_here = {
+            p.get("name"): inner(p.get("value")) for p in element.iter("param") if p.get("name")
+        }
+        assert {name: value.args[0] for name, value in made.parameters[-1].items()} == set_here
+    assert page.condition.args[0].args[0] == inner(element.get("if"))
 
 
 def inner(text: str) -> str:
