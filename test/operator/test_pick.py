@@ -14,6 +14,7 @@ from operator_browser import wait
 from rclpy.executors import SingleThreadedExecutor
 from rclpy.node import Node
 
+from het_ros import Box
 from het_ros.operator.demo import Camera
 from het_ros.ros.messages import BoxError, box_from_polygon, stamp_ns
 from het_ros.ros.status import status_values
@@ -97,16 +98,18 @@ def test_a_box_drawn_on_a_frozen_picture_ends_on_the_target(processes, street, v
     page.wait_for_state("IDLE")
     page.page.locator("#direct").uncheck()
 
-    page.page.locator("#live").focus()
-    page.keys("p")
+    near = street.truth_at(int(page.get("operatorPage.view.image.stamp")))
+    page.page.mouse.move(*page.place(near.x, near.y))
+    page.page.mouse.down()
     stamp = wait(page.frozen_stamp, "a frozen picture")
     truth = street.truth_at(stamp)
-    # Out of the box in the middle, and a new one around the target.
-    page.drag((truth.x, truth.y), (truth.x + truth.w, truth.y + truth.h))
+    page.page.mouse.move(*page.place(truth.x + truth.w, truth.y + truth.h), steps=4)
+    page.page.mouse.up()
     frozen_at = time.monotonic()
     wait(lambda: time.monotonic() - frozen_at > 1.5, "a second and a half on the frozen picture")
     assert page.frozen_stamp() == stamp
     drawn = page.box()
+    assert Box(*drawn).iou(truth) > 0.7
     page.keys("Enter")
 
     wait(lambda: street.asked, "the box on its topic")
