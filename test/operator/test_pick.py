@@ -105,11 +105,16 @@ def test_a_box_drawn_on_a_frozen_picture_ends_on_the_target(processes, street, v
     truth = street.truth_at(stamp)
     page.page.mouse.move(*page.place(truth.x + truth.w, truth.y + truth.h), steps=4)
     page.page.mouse.up()
+    # The target moved on until the press froze the picture: its corners are put right.
+    x, y, w, h = page.box()
+    page.drag((x, y), (truth.x, truth.y))
+    x, y, w, h = page.box()
+    page.drag((x + w, y + h), (truth.x + truth.w, truth.y + truth.h))
     frozen_at = time.monotonic()
     wait(lambda: time.monotonic() - frozen_at > 1.5, "a second and a half on the frozen picture")
     assert page.frozen_stamp() == stamp
     drawn = page.box()
-    assert Box(*drawn).iou(truth) > 0.7
+    assert Box(*drawn).iou(truth) > 0.8
     page.keys("Enter")
 
     wait(lambda: street.asked, "the box on its topic")
