@@ -193,6 +193,7 @@ async def _attack(world: Running, attack, messages: int) -> None:
 
     stop = asyncio.Event()
     good = asyncio.ensure_future(watch(world.url, VIEWS[2], stop))
+    await asyncio.sleep(5)
     for part in range(10):
         begin = time.monotonic()
         await attack(Address, random.Random(part), messages // 10)

@@ -43,7 +43,7 @@ def main() -> None:
         with chromium() as browser:
             for name, (device, state, scheme) in PICTURES.items():
                 if options.only in ("", name):
-                    _take(server, browser, options.out / f"{name}.png", device, state, scheme)
+                    _take(server, browser, options.out / f"{name}.jpg", device, state, scheme)
     finally:
         server.close()
 
@@ -62,7 +62,7 @@ def _take(server, browser, path: Path, device: dict, state: str, scheme: str) ->
         server.bridge.state = state
         page.wait_for_state(state)
     time.sleep(0.5)
-    page.page.screenshot(path=str(path))
+    page.page.screenshot(path=str(path), type="jpeg", quality=85)
     context.close()
     print(path)
 
