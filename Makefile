@@ -9,7 +9,7 @@ PYTHON ?= python3
 VENV := .venv
 PEERS := .venv-peers
 OLDEST := .venv-oldest
-VENV_EXTRAS := ros,opencv,bags,test,build
+VENV_EXTRAS := ros,opencv,bags,operator,test,build
 PEERS_EXTRAS := ros,bags,evaluate
 BUILT := install/.built
 SOURCES := $(shell find het_ros config launch resource -type f -not -name '*.pyc' 2>/dev/null)
@@ -22,13 +22,14 @@ WORKSPACE := $(ROS); source install/setup.bash
 PEERS_SPACE := $(CLEAN); source $(PEERS)/bin/activate; export AMENT_PREFIX_PATH="$$VIRTUAL_ENV"; \
 	source install/setup.bash
 
-.PHONY: help setup build run test test-oldest fuzz faults soak evaluate compare scenes bench docs \
+.PHONY: help setup build run operator test test-oldest fuzz faults soak evaluate compare scenes bench docs \
 	count format clean
 
 help: ## What there is to make
 	@grep -E '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:[^#]*## /\t/' | expand -t 14
 	@echo
 	@echo 'make run [VIDEO=file INIT=x,y,w,h | SEQUENCE=folder] [OUT=out/run]'
+	@echo 'make operator [VIDEO=file | SEQUENCE=folder] [OPERATOR="-o host:=0.0.0.0"]; make run WEB=1'
 	@echo 'make evaluate DATA=folder [OUT=out/evaluate] [TRACKERS=het,csrt] [SEEDS=3]'
 	@echo '     [PROTOCOL=ope|tre|sre|passes|realtime|restart] [SEQUENCES=a,b] [SCHEDULER=tcp://host:8786]'
 	@echo '     [MODELS=folder] [BOXES="NAME=folder ..."]'
@@ -76,12 +77,16 @@ $(BUILT): $(VENV)/.ready package.xml setup.py setup.cfg $(SOURCES)
 VIDEO ?=
 INIT ?=
 SEQUENCE ?=
-RUN_OPTIONS = $(if $(VIDEO),--video '$(VIDEO)') $(if $(INIT),--init '$(INIT)') \
-	$(if $(SEQUENCE),--sequence '$(SEQUENCE)')
+FOOTAGE = $(if $(VIDEO),--video '$(VIDEO)') $(if $(SEQUENCE),--sequence '$(SEQUENCE)')
 
 run: OUT ?= out/run
 run: $(BUILT) ## Follow the target of the recorded bag, or of your own footage; look into out/run
-	@$(WORKSPACE); python -m het_ros.tools.run --out '$(OUT)' $(RUN_OPTIONS)
+	@$(WORKSPACE); python -m $(if $(WEB),het_ros.operator.demo $(OPERATOR),het_ros.tools.run \
+		$(if $(INIT),--init '$(INIT)')) $(FOOTAGE) --out '$(OUT)'
+
+operator: WEB = 1
+operator: OUT ?= out/operator
+operator: run ## The same in a browser, to and fro: pick the target on the page whose address it tells
 
 # Tests of many processes and of real time do not bear company; the others run side by side.
 # A choice by PYTEST may leave nothing to do (pytest's exit code 5) for one of the two.
