@@ -37,6 +37,7 @@ from het_ros.tracking.top.confidence import Confidence, Decision
 from het_ros.tracking.top.ego_motion import EgoMotion
 from het_ros.tracking.top.kalman import AdaptiveKalman
 from het_ros.tracking.top.redetection import Redetection
+from het_ros.tracking.top.velocity import VelocityFilter
 
 Floats = NDArray[np.float64]
 Image = NDArray[np.uint8]
@@ -138,6 +139,7 @@ class Target:
             config.nominal_dt,
             config.longest_dt,
         )
+        self._velocity = VelocityFilter(np.array(box.centre), side)
         self._network = NetworkEnsemble(Path(config.network)) if config.network else None
         if self._network:
             self._network.start(image, box)
@@ -188,6 +190,7 @@ class Target:
     def _predict(self, image: Image, dt: float, step: float) -> None:
         """Move the motion model on, and what is known of the scene with the camera."""
         self._motion.predict(dt)
+        self._velocity.predict(step, math.sqrt(float(self._size.size.prod())))
         shift = self._ego_motion.follow(image, step)
         if self._background:
             self._background.move(shift)
@@ -332,6 +335,7 @@ class Target:
     def _coast(self) -> None:
         """The target is not there: go on as predicted."""
         self._motion.coast()
+        self._velocity.coast()
         for ensemble in self._ensembles:
             ensemble.forget()
 
@@ -340,7 +344,9 @@ class Target:
         centre = np.array(found.box.centre)
         if decision.returned:
             self._motion.restart(centre)
+            self._velocity.restart(centre, math.sqrt(found.box.area))
         else:
+            self._velocity.correct(centre)
             self._motion.correct(centre, float(np.clip(found.weights, *_WEIGHTS).mean()))
         self._redetection.forget()
         self._last_seen = centre
@@ -384,8 +390,13 @@ class Target:
         return Box.from_centre(x, y, width, height)
 
     def estimate(self, score: float, state: State, patches: tuple[Patch, ...] = ()) -> Estimate:
-        """What the motion model holds, as an estimate."""
-        box, covariance = self._box(self._motion.centre), self._motion.covariance
+        """What the two filters of the motion hold, as an estimate."""
+        box, motion = self._box(self._motion.centre), self._velocity.motion
         lasting = lasting_deviation(score) * np.array([box.w, box.h])
-        covariance[:2, :2] += np.diag(lasting**2)
-        return Estimate(box, self._motion.velocity, covariance, score, state, patches)
+        covariance = np.zeros((4, 4))
+        covariance[:2, :2] = self._motion.covariance[:2, :2] + np.diag(lasting**2)
+        covariance[2:, 2:] = motion.covariance
+        own_x, own_y = (np.array(motion.total) - self._ego_motion.velocity).tolist()
+        return Estimate(
+            box, motion.total, covariance, score, state, patches, (own_x, own_y), motion
+        )
