@@ -54,6 +54,8 @@ EXTRAS = {
         "attributee<0.1.10",  # vot-toolkit 0.9 breaks with newer ones on Python 3.11
         *SCORING,
     ],
+    # Fitting the constants of `make fit`.
+    "fit": ["scikit-learn>=1.3", *SCORING],
     # Scoring on a Dask cluster.
     "cluster": ["distributed>=2023.1"],
     # colcon still needs `setup.py develop`, which setuptools 80 took away.
