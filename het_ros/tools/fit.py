@@ -5,8 +5,8 @@
 The tracker follows sequences with ground truth, from their true first boxes and from boxes that
 are off by a tenth, and rendered scenes. Each fit is judged by folds that hold a sequence out, and
 the constants are written with these figures into one file. While it is recorded, the tracker runs
-with the constants that the file names as RECORDED_WITH, so the same data give the same file however
-often this is run; --again takes the fitted ones.
+with the constants that the file names as RECORDED_WITH, so the same data give the same file
+however often this is run; --again takes the fitted ones.
 """
 
 from __future__ import annotations
@@ -170,8 +170,8 @@ def main(argv: list[str] | None = None) -> int:
     """Command line."""
     p = command("fit", __doc__, EXAMPLE)
     p.add_argument("--data", type=Path, required=True, help="folder of sequences (OTB, VOT)")
-    p.add_argument("--models", type=Path, help="folder with NanoTrack v3; without it the constants "
-                   "that need a network stay")  # fmt: skip
+    p.add_argument("--models", type=Path,
+                   help="folder with NanoTrack v3; else what needs it stays")  # fmt: skip
     p.add_argument("--sequences", default="", help="comma-separated (default: all)")
     p.add_argument("--seeds", type=int, default=3, help="runs from the true first box (3)")
     p.add_argument("--off", type=int, default=3, help="runs from boxes off by a tenth (3)")
