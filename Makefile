@@ -9,7 +9,7 @@ PYTHON ?= python3
 VENV := .venv
 PEERS := .venv-peers
 OLDEST := .venv-oldest
-VENV_EXTRAS := ros,opencv,bags,operator,test,build
+VENV_EXTRAS := ros,opencv,bags,operator,test,build,fit
 PEERS_EXTRAS := ros,bags,evaluate
 BUILT := install/.built
 SOURCES := $(shell find het_ros config launch resource -type f -not -name '*.pyc' 2>/dev/null)
@@ -22,7 +22,7 @@ WORKSPACE := $(ROS); source install/setup.bash
 PEERS_SPACE := $(CLEAN); source $(PEERS)/bin/activate; export AMENT_PREFIX_PATH="$$VIRTUAL_ENV"; \
 	source install/setup.bash
 
-.PHONY: help setup build run operator test test-oldest fuzz faults soak evaluate compare scenes bench docs \
+.PHONY: help setup build run operator test test-oldest fuzz faults soak evaluate compare scenes fit bench docs \
 	count format clean
 
 help: ## What there is to make
@@ -35,6 +35,7 @@ help: ## What there is to make
 	@echo '     [MODELS=folder] [BOXES="NAME=folder ..."]'
 	@echo 'make compare A=folder B=folder[:tracker] [OUT=folder] [DATA=folder]'
 	@echo 'make scenes [OUT=out/scenes] [SCENES="--seeds 20 --stories lookalike_crosses"]'
+	@echo 'make fit DATA=folder [MODELS=folder] [SEQUENCES=a,b] [SEEDS=3] [FIT="--off 1 --again"]'
 	@echo 'make bench [OUT=out/bench] [DATA=folder]'
 	@echo 'make fuzz [MINUTES=10] [OUT=out/fuzz]'
 	@echo 'make soak [MINUTES=60] [OUT=out/soak] [SOAK="--size 1280x720 -p seed:=3"]'
@@ -144,6 +145,12 @@ compare: $(BUILT) ## Judge a change: paired differences of the results folders A
 scenes: OUT ?= out/scenes
 scenes: $(BUILT) ## Is it honest? Rendered stories with exact truth: hidden, gone, look-alikes
 	@$(WORKSPACE); python -m het_ros.tools.scenes --out '$(OUT)/scenes.json' $(SCENES)
+
+fit: OUT ?= out/fit
+fit: $(VENV)/.ready ## Fit the tracker's calibration to DATA=folder; writes het_ros/tracking/fitted.py
+	@test -n '$(DATA)' || { echo 'make fit DATA=folder [MODELS=folder]: name a folder of sequences (OTB or VOT layout)'; exit 2; }
+	@$(ROS); python -m het_ros.tools.fit --data '$(DATA)' --plot '$(OUT)/fit.png' $(if $(MODELS),--models '$(MODELS)') \
+		$(if $(SEQUENCES),--sequences '$(SEQUENCES)') $(if $(SEEDS),--seeds $(SEEDS)) $(FIT)
 
 bench: OUT ?= out/bench
 bench: $(BUILT) $(PEERS)/.ready ## Speed of the core and of the node, as ratios to the peers

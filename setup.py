@@ -57,6 +57,8 @@ EXTRAS = {
     ],
     # The page on which a target is picked; segno draws its address as a QR code.
     "operator": ["aiohttp>=3.8", "jsonschema>=4.10", "segno>=1.4"],
+    # Fitting the constants of `make fit`.
+    "fit": ["scikit-learn>=1.3", *SCORING],
     # Scoring on a Dask cluster.
     "cluster": ["distributed>=2023.1"],
     # colcon still needs `setup.py develop`, which setuptools 80 took away.
@@ -88,8 +90,9 @@ setup(
     name=NAME,
     version=PACKAGE.findtext("version"),
     packages=find_packages(include=[NAME, f"{NAME}.*"]),
-    package_data={NAME: ["py.typed", "evaluation/*.csv", "evaluation/templates/*"]},
-    package_data={NAME: ["py.typed", "evaluation/templates/*", "operator/static/*"]},
+    package_data={
+        NAME: ["py.typed", "evaluation/*.csv", "evaluation/templates/*", "operator/static/*"]
+    },
     data_files=[
         ("share/ament_index/resource_index/packages", [f"resource/{NAME}"]),
         (f"share/{NAME}", ["package.xml"]),

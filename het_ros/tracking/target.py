@@ -18,13 +18,16 @@ from het_ros.tracking.bottom.flow import FlowEnsemble
 from het_ros.tracking.bottom.network import NetworkEnsemble, Proposal
 from het_ros.tracking.bottom.sub_patches import SubPatchEnsembles, draw_layout
 from het_ros.tracking.box import Box
+from het_ros.tracking.calibration import Calibration
 from het_ros.tracking.config import TrackerConfig
 from het_ros.tracking.cost import check_cost
 from het_ros.tracking.estimate import Estimate, Patch, State, lasting_deviation
 from het_ros.tracking.features.extractor import FeatureExtractor, target_cells
+from het_ros.tracking.fitted import FITTED
 from het_ros.tracking.middle.alignment import FirstFrameAlignment
 from het_ros.tracking.middle.fusion import (
     Agreement,
+    Disagreement,
     FusionConfig,
     followed_size,
     fused_place,
@@ -95,12 +98,15 @@ class Target:
         config: parameters.
         image: (H, W, 3) or (H, W) uint8.
         box: the target in it.
+        calibration: the fitted constants.
 
     Raises:
         ValueError: it would take more memory than ``most_memory``.
     """
 
-    def __init__(self, config: TrackerConfig, image: Image, box: Box) -> None:
+    def __init__(
+        self, config: TrackerConfig, image: Image, box: Box, calibration: Calibration = FITTED
+    ) -> None:
         rng = np.random.default_rng(config.seed)
         cells = target_cells((box.w, box.h), config.working_side)
         check_cost(config, cells)
@@ -146,11 +152,13 @@ class Target:
         self._ego_motion = EgoMotion(image)
         self._background = Background(image.shape, side) if config.background else None
         self._redetection = Redetection()
-        self._confidence = Confidence(config.lost_after)
+        self._confidence = Confidence(config.lost_after, calibration)
+        self._fusion = FusionConfig.of(calibration)
         self._last_seen = np.array(box.centre)
         self._score = 1.0
         self._alignment: FirstFrameAlignment | None = None
-        self.probe = ()
+        self._judged = box
+        self._disagreement: Disagreement | None = None
         look = self._look(image, np.array(box.centre))
         self._learn(look, box, 1.0, 1.0)
         middle = look.frame.window.to_window(np.array(box.centre))
@@ -160,6 +168,16 @@ class Target:
     def confidence(self) -> Confidence:
         """What judges the target; its ``features`` are those of the last frame."""
         return self._confidence
+
+    @property
+    def judged(self) -> Box:
+        """The box whose place was judged in the last frame, whether or not it was followed."""
+        return self._judged
+
+    @property
+    def disagreement(self) -> Disagreement | None:
+        """Of network and ensembles in the last frame; None where their places are one."""
+        return self._disagreement
 
     def follow(
         self,
@@ -223,12 +241,13 @@ class Target:
 
     def _find(self, image: Image, at: Floats) -> _Found:
         """All base ensembles vote; the best place is the target's if anything is."""
+        self._disagreement = None
         look = self._look(image, at)
         if self._network is None:
             return self._best_of(look, self._vote(look))
         proposal = self._network.propose(look, at)
         theirs = np.array(proposal.box.centre)
-        if proposal.score > FusionConfig().sure and not self._shows(look, theirs):
+        if proposal.score > self._fusion.sure and not self._shows(look, theirs):
             look = self._look(image, theirs)
         return self._fused(look, self._vote(look), proposal)
 
@@ -273,7 +292,7 @@ class Target:
 
     def _fused(self, look: Look, votes: _Votes, proposal: Proposal) -> _Found:
         """The place that network and ensembles agree on, or the likelier of their two places."""
-        config, side = FusionConfig(), math.sqrt(float(look.size.prod()))
+        config, side = self._fusion, math.sqrt(float(look.size.prod()))
         ours = self._best_of(look, votes)
         place, theirs = np.array(ours.box.centre), np.array(proposal.box.centre)
         apart = float(np.hypot(*(theirs - place))) / side
@@ -286,24 +305,17 @@ class Target:
         here = proposal.score_at(place, config.near * side)
         there = peak_near(votes.response, look.corner_of(theirs))
         gained = votes.response[there.row, there.column] - votes.response.max()
-        moved = [
-            min(float(np.hypot(*(centre - look.expected))) / side, 1.5)
-            for centre in (theirs, place)
-        ]
-        self.probe = (
-            apart,
+        self._disagreement = Disagreement(
             proposal.score,
             here,
-            float(votes.response.max()),
-            float(votes.response[there.row, there.column]),
+            float(gained),
             self._confidence.usual,
-            *theirs.tolist(),
-            *place.tolist(),
-            *look.expected.tolist(),
+            _point(theirs),
+            _point(place),
+            _point(look.expected),
+            side,
         )
-        if network_is_right(
-            proposal.score - here, float(gained) / self._confidence.usual, moved[0] - moved[1]
-        ):
+        if network_is_right(self._disagreement, config):
             found = self._at(look, votes, there, theirs)
             agreement = Agreement(proposal.score, min(apart, 1.0))
             return replace(found, proposal=proposal, agreement=agreement)
@@ -317,6 +329,7 @@ class Target:
         witness: Callable[[Box], bool] | None,
     ) -> Decision:
         """Whether it is the target, or something else that stands there."""
+        self._judged = found.box
         occluded = witness is not None and not witness(found.box)
         if not occluded and self._background:
             occluded = self._background.shows(image, found.box)
@@ -400,3 +413,8 @@ class Target:
         return Estimate(
             box, motion.total, covariance, score, state, patches, (own_x, own_y), motion
         )
+
+
+def _point(place: Floats) -> tuple[float, float]:
+    x, y = place.tolist()
+    return x, y
