@@ -17,7 +17,7 @@ ENSEMBLE = ROOT / "examples" / "brightness_ensemble.py"
 sys.path.insert(0, str(ROOT))
 from examples.brightness_ensemble import BrightnessEnsemble, tracker  # noqa: E402
 
-COUNT = 40
+COUNT = 12
 LAST_CENTRE = 20 + 2 * (COUNT - 1) + 10, 40 + (COUNT - 1) // 2 + 16
 
 
@@ -109,7 +109,7 @@ def test_a_vote_decides_between_two_that_are_alike():
 
 def test_the_script_without_ros_follows_a_video_file(tmp_path):
     footage, out = tmp_path / "walk.avi", tmp_path / "out.mp4"
-    frames = moving_target(20)
+    frames = moving_target(8)
     writer = cv2.VideoWriter(
         str(footage), cv2.VideoWriter_fourcc(*"MJPG"), 30, frames[0].shape[1::-1]
     )
