@@ -135,9 +135,7 @@ class TrackingSession:
         self.reason = "" if self.state is State.TRACKING else f"not seen for {self.age:.2f} s"
 
 
-def new_tracker(
-    name: str, config: TrackerConfig
-) -> HierarchicalEnsembleTracker | PaperTracker:
+def new_tracker(name: str, config: TrackerConfig) -> HierarchicalEnsembleTracker | PaperTracker:
     """The tracker of a name, "het" or "paper"; of the parameters the paper's takes the seed."""
     if name == "het":
         return HierarchicalEnsembleTracker(config)

@@ -33,7 +33,11 @@ class TrackerConfig:
         48.0, "sqrt(w h) of the target in the search window", unit="px", low=8, high=1000
     )
     search_radius: float = parameter(
-        34.0, "how far the target is looked for around its place", unit="working px", low=1, high=200
+        34.0,
+        "how far the target is looked for around its place",
+        unit="working px",
+        low=1,
+        high=200,
     )
     gray_below: float = parameter(
         2.0,
@@ -95,8 +99,11 @@ class TrackerConfig:
         True, "what stood at its place before the target came there is not the target"
     )
     lost_after: float = parameter(
-        2.0, "a target that is not recognised is COASTING for this long, then LOST",
-        unit="s", low=0, high=60,
+        2.0,
+        "a target that is not recognised is COASTING for this long, then LOST",
+        unit="s",
+        low=0,
+        high=60,
     )
 
     def __post_init__(self) -> None:

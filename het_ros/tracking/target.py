@@ -24,6 +24,7 @@ from het_ros.tracking.cost import check_cost
 from het_ros.tracking.estimate import Estimate, Patch, State, lasting_deviation
 from het_ros.tracking.features.extractor import FeatureExtractor, target_cells
 from het_ros.tracking.middle.size import Size
+from het_ros.tracking.middle.alignment import FirstFrameAlignment
 from het_ros.tracking.middle.fusion import (
     Agreement,
     FusionConfig,
@@ -55,6 +56,7 @@ class _Found:
         score: mean score of the sub-patches there; ``distractor`` the highest elsewhere.
         colour: likelihood of the colours there.
         weights: (Q,) of the sub-patches there.
+        growth: logarithm of the ratio by which the first frame draws the size.
         proposal: the network's box there, if it is followed.
         agreement: what the network says of it, if there is one.
     """
@@ -66,6 +68,7 @@ class _Found:
     distractor: float
     colour: float
     weights: Floats
+    growth: float = 0.0
     proposal: Proposal | None = None
     agreement: Agreement | None = None
 
@@ -155,9 +158,12 @@ class Target:
         self._confidence = Confidence(config.lost_after)
         self._last_seen = np.array(box.centre)
         self._score = 1.0
+        self._alignment: FirstFrameAlignment | None = None
         self.probe=()
         look = self._look(image, np.array(box.centre))
         self._learn(look, box, 1.0, 1.0)
+        middle = look.frame.window.to_window(np.array(box.centre))
+        self._alignment = FirstFrameAlignment(look.frame.channels, middle, cells)
 
     @property
     def confidence(self) -> Confidence:
@@ -251,8 +257,13 @@ class Target:
         return _Votes(template, colour, response)
 
     def _best_of(self, look: Look, votes: _Votes) -> _Found:
-        peak = best_place(votes.response)
-        return self._at(look, votes, peak, look.centre_of(peak.corner))
+        peak, growth = best_place(votes.response), 0.0
+        if self._alignment:
+            correction = self._alignment.correction(look.frame.channels, look.middle_of(peak.corner))
+            peak = replace(peak, corner=peak.corner + correction.shift)
+            growth = correction.growth
+        found = self._at(look, votes, peak, look.centre_of(peak.corner))
+        return replace(found, growth=growth)
 
     def _at(self, look: Look, votes: _Votes, peak: Peak, centre: Floats) -> _Found:
         """A target with its ``centre`` (x, y) there, image px, next to a peak of the votes."""
@@ -345,8 +356,8 @@ class Target:
         """Size, base ensembles and background follow the target, as far as it is believed."""
         ratio, centre = 1.0, np.array(found.box.centre)
         if decision.weight:
-            middle = found.peak.corner + np.array(found.look.cells) / 2
-            ratio = self._size.follow(found.look.frame, middle, self._flow.flow, dt)
+            middle = found.look.middle_of(found.peak.corner)
+            ratio = self._size.follow(found.look.frame, middle, self._flow.flow, dt, found.growth)
         if found.proposal:
             before = self._size.size
             self._size.size = followed_size(before, found.proposal)

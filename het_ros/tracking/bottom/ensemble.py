@@ -41,6 +41,10 @@ class Look:
     places: tuple[int, int]
     confidence: float
 
+    def middle_of(self, corner: Floats) -> Floats:
+        """(x, y), cells: the middle of a target with its ``corner`` (..., 2) there, cells."""
+        return np.asarray(corner + np.array(self.cells) / 2)
+
     def corner_of(self, centre: Floats) -> Floats:
         """(x, y), cells: the corner of a target with its ``centre`` (..., 2) there, image px."""
         return self.frame.window.to_window(centre) - np.array(self.cells) / 2

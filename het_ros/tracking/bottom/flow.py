@@ -134,9 +134,7 @@ class FlowEnsemble:
         window = look.frame.window.in_cells(1 / self._cell)
         return window, gray_of(window.pixels)
 
-    def _trace(
-        self, before: _Seen, window: Window, gray: Pixels, expected: Floats
-    ) -> Flow | None:
+    def _trace(self, before: _Seen, window: Window, gray: Pixels, expected: Floats) -> Flow | None:
         """Follow the points of the last frame's box, which lead to about ``expected``."""
         config, centre = self._config, np.array(before.box.centre)
         if gray.shape != before.gray.shape:

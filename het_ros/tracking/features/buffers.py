@@ -56,4 +56,3 @@ class Buffers:
 def _references(arrays: list[Array], index: int) -> int:
     """References to an array of a list, of which its views hold one each."""
     return sys.getrefcount(arrays[index])
-

@@ -111,7 +111,9 @@ def normalised_gradient(lightness: Pixels, cell: int) -> tuple[Plane, Plane]:
     directions = np.asarray(cv2.phase(dx, dy), np.float32)
     directions *= _CONFIG.orientations / math.pi
     # Directions k and k + orientations are the same; the subtraction is exact.
-    turned = cv2.threshold(directions, _CONFIG.below_half_turn, _CONFIG.orientations, cv2.THRESH_BINARY)[1]
+    turned = cv2.threshold(
+        directions, _CONFIG.below_half_turn, _CONFIG.orientations, cv2.THRESH_BINARY
+    )[1]
     directions -= turned
     np.multiply(dx, dx, out=dx)
     np.multiply(dy, dy, out=dy)
@@ -197,7 +199,9 @@ class _Source:
     @property
     def texture(self) -> Plane:
         """(H, W) float32, how much the gray values around each pixel differ."""
-        return np.asarray(_CONFIG.texture_scale * deviation(self.gray, _CONFIG.texture_side), np.float32)
+        return np.asarray(
+            _CONFIG.texture_scale * deviation(self.gray, _CONFIG.texture_side), np.float32
+        )
 
     @cached_property
     def gradient(self) -> tuple[Plane, Plane]:
@@ -237,7 +241,10 @@ _TABLE: dict[str, tuple[Callable[[_Source], NDArray[np.generic]], str | None]] =
     "blue_yellow": (lambda source: source.lab[..., 2], None),
     "texture": (lambda source: source.texture, "texture"),
     "gradient": (lambda source: source.gradient[0], "gradient"),
-    **{f"orientation{k}": (_orientation(k), f"orientation{k}") for k in range(_CONFIG.orientations)},
+    **{
+        f"orientation{k}": (_orientation(k), f"orientation{k}")
+        for k in range(_CONFIG.orientations)
+    },
 }
 
 CHANNEL_NAMES: tuple[str, ...] = tuple(_TABLE)

@@ -96,7 +96,7 @@ class ScaleFilter:
 
     def _spectrum(self, planes: Planes, centre: Floats, ratio: float) -> Spectra:
         """(d, K): channel means over the grid, centred and scaled, transformed over the sizes."""
-        sides = ratio * self._config.step**self._exponents[:, None] * self._size  # (S, 2)
+        sides = ratio * self._config.step ** self._exponents[:, None] * self._size  # (S, 2)
         means = grid_means(planes, centre, sides, self._config.grid)  # (S, g, C, g)
         features = self._normalisation.features(means)
         # What is real and what imaginary of a frequency lie next to each other.

@@ -68,7 +68,9 @@ class Size:
         self._limit = limit
         self._frames = 0
 
-    def follow(self, frame: Frame, centre: Floats, flow: Flow | None, dt: float) -> float:
+    def follow(
+        self, frame: Frame, centre: Floats, flow: Flow | None, dt: float, drawn: float = 0.0
+    ) -> float:
         """Take over the change of size in a frame; returns the ratio to the size before.
 
         Args:
@@ -76,13 +78,14 @@ class Size:
             centre: (x, y) of the target, cells.
             flow: what optical flow says of it.
             dt: time since the last frame, s.
+            drawn: logarithm of the ratio by which the first frame draws the size.
         """
         config = self._config
         known = min(self._frames / config.known_after, 1.0)
         most = self._limit * dt * known
         by_flow = self._by_flow(flow)
         by_filter = math.log(self._filter.change(frame.channels, centre))
-        growth = by_flow + min(max(by_filter - by_flow, -most), most)
+        growth = by_flow + min(max(by_filter + drawn - by_flow, -most), most)
         if growth < 0 and self.size.min() * math.exp(growth) < config.smallest:
             growth = 0.0
         ratio = math.exp(growth)

@@ -27,17 +27,16 @@ class Features:
     """What speaks for the place that was found.
 
     Attributes:
-        score: mean score of the sub-patches there, about 1 for the target as learnt.
-        usual: exponential average of that over the frames that were learnt; low for a target
-            that is hard to tell.
-        relative: score over usual.
+        usual: exponential average of the sub-patches' mean score, about 1 for the target as
+            learnt, over the frames that were learnt; low for a target that is hard to tell.
+        relative: the score there over usual.
         colour: likelihood of the colours there over its own average.
         distractor: highest score elsewhere in the window over the one there.
-        moved: distance from the prediction, target sides.
+        moved: distance from the prediction, target sides, over one more than the frames since
+            the target was last recognised: the longer ago, the less a distance says.
         spread: deviation of the sub-patches' scores, which agree on a target.
     """
 
-    score: float
     usual: float
     relative: float
     colour: float
@@ -47,7 +46,7 @@ class Features:
 
     def clipped(self) -> tuple[float, ...]:
         """The features within the ranges in which more of them says more."""
-        limits = (1.2, math.inf, 1.3, 1.3, 1.5, 1.0, math.inf)
+        limits = (math.inf, 1.3, 1.3, 1.5, 1.0, math.inf)
         return tuple(
             min(max(x, 0.0), most) for x, most in zip(astuple(self), limits, strict=True)
         )
@@ -93,7 +92,7 @@ class ConfidenceConfig:
     learn_whole: float = 0.7
     ambiguous: float = 0.9
     new: int = 10
-    stay_within: float = 1.5
+    stay_within: float = 0.5
     stay_above: float = 0.25
     average_rate: float = 0.05
 
@@ -134,6 +133,7 @@ class Confidence:
         self._score, self._colour = 1.0, 0.0
         self._frames = 0
         self._hidden_for = 0.0
+        self._unrecognised = 0
         self._state = State.TRACKING
         self.features: Features | None = None
         self.unseen = 0
@@ -173,7 +173,9 @@ class Confidence:
         share = colour / self._colour if self._colour else 1.0
         elsewhere = min(max(distractor, 0.0) / max(score, 1e-6), 10.0)
         relative = score / self._score
-        found = Features(score, self._score, relative, share, elsewhere, moved, spread)
+        found = Features(
+            self._score, relative, share, elsewhere, moved / (1 + self._unrecognised), spread
+        )
         self.features = found
         self.agreement = agreement
         likely = probability(found, agreement)
@@ -185,12 +187,14 @@ class Confidence:
         least = config.hidden if self._state is State.TRACKING else config.back
         returned = self.unseen > 0
         if not occluded and likely >= least:
-            self.unseen, self._hidden_for, self._state = 0, 0.0, State.TRACKING
+            self.unseen, self._unrecognised = 0, 0
+            self._hidden_for, self._state = 0.0, State.TRACKING
             weight = 0.0 if ambiguous else self._weight(likely)
             if weight:
                 self._average(score, colour)
             return Decision(True, returned, weight, likely, self._state)
         self._hidden_for += dt
+        self._unrecognised += 1
         lost = self._state is State.LOST or self._hidden_for > self._lost_after
         self._state = State.LOST if lost else State.COASTING
         near = moved < config.stay_within and relative > config.stay_above

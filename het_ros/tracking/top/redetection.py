@@ -100,9 +100,7 @@ class Redetection:
         config = self._config
         small, scale = _reduced(image, math.sqrt(last.area), config)
         size = tuple(max(1, round(side * scale)) for side in (last.w, last.h))
-        means = cv2.boxFilter(
-            likelihood(small), cv2.CV_32F, size, borderType=cv2.BORDER_CONSTANT
-        )
+        means = cv2.boxFilter(likelihood(small), cv2.CV_32F, size, borderType=cv2.BORDER_CONSTANT)
         score = np.asarray(means, np.float64)
         x, y = ((np.arange(length) + 0.5) / scale for length in score.shape[::-1])
         away_x, away_y = (x - last.centre[0]) / last.w, (y - last.centre[1]) / last.h

@@ -31,9 +31,7 @@ def test_lambda_is_one_minus_the_learning_rate():
 def test_every_parameter_says_where_it_comes_from():
     for declared in parameters_of(PaperConfig):
         if declared.name != "seed":
-            assert (
-                "(paper)" in declared.doc or "(chosen" in declared.doc
-            )
+            assert "(paper)" in declared.doc or "(chosen" in declared.doc
 
 
 @pytest.mark.parametrize(
