@@ -164,15 +164,16 @@ picture: $(BUILT) ## The moving picture of the README, from the recorded bag
 	@$(WORKSPACE); python -m het_ros.tools.replay bags/follow_walk --out out/picture; \
 		python -m het_ros.tools.picture out/picture/track.mp4 docs/images/follow_walk.webp
 
-count: ## Lines of code and words of the pages
-	@for part in het_ros/*/ test examples; do \
-		printf '%7d lines  %s\n' $$(find $$part -name '*.py' -exec cat {} + | wc -l) $$part; done
-	@wc -l README.md; wc -w README.md CONTRIBUTING.md $$(find docs -name '*.md' | sort)
-
 coverage: $(BUILT) ## Which lines of the core and the node the tests reach; states it, gates nothing
 	@$(WORKSPACE); python -m pip install --quiet --disable-pip-version-check pytest-cov; \
 		python -m pytest -q --cov=het_ros.tracking --cov=het_ros.ros --cov-report=term:skip-covered \
 		test/tracking test/ros $(PYTEST)
+
+count: ## Lines, parameters and module constants of the tracker; lines of all parts, words of pages
+	@$(PYTHON) .ci/count.py
+	@for part in het_ros/*/ test examples; do \
+		printf '%7d lines  %s\n' $$(find $$part -name '*.py' -exec cat {} + | wc -l) $$part; done
+	@wc -l README.md; wc -w README.md CONTRIBUTING.md $$(find docs -name '*.md' | sort)
 
 format: $(VENV)/.ready ## Format the code
 	$(ROS); ruff check --fix .; ruff format .

@@ -1,24 +1,25 @@
 # Copyright 2026 het_ros maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""Installed by colcon as an ament_python package; ``pip install .`` works as well."""
+"""Installed by colcon as an ament_python package; ``pip install .`` works as well.
 
+Name, version, description, people, license and addresses are those of package.xml: colcon and
+bloom read them there.
+"""
+
+import runpy
+import sys
 from pathlib import Path
+from xml.etree import ElementTree
 
 from setuptools import find_packages, setup
 
-NAME = "het_ros"
 ROOT = Path(__file__).parent
-
-# Each executable and the module whose main() it runs.
-COMMANDS = {
-    "tracker": "het_ros.ros.tracker",
-    "make_bag": "het_ros.tools.make_bag",
-    "play": "het_ros.tools.play",
-    "replay": "het_ros.tools.replay",
-    "run": "het_ros.tools.run",
-    "evaluate": "het_ros.evaluation.cli",
-    "follower_example": "het_ros.ros.follower_example",
-}
+PACKAGE = ElementTree.parse(ROOT / "package.xml").getroot()
+NAME = PACKAGE.findtext("name")
+COMMANDS = runpy.run_path(str(ROOT / NAME / "commands.py"))["COMMANDS"]
+# colcon and Debian's builds run `setup.py install` or `develop`, pip does not. `ros2 run` takes
+# plain names; on a pip user's PATH they carry the package's.
+PREFIX = "" if {"install", "develop"} & set(sys.argv) else f"{NAME}_"
 
 # What scoring, tables and pictures of `evaluate` and `bench` need beside a cv2.
 SCORING = [
@@ -66,10 +67,13 @@ EXTRAS = {
         "mypy>=1.10",
         "import-linter>=2.0",
         "catkin-pkg>=1.0",
+        "rosdep>=0.22",
         "distributed>=2023.1",
         *SCORING,
     ],
 }
+
+MAINTAINER = PACKAGE.find("maintainer")
 
 
 def _files(folder: str) -> list[str]:
@@ -79,7 +83,7 @@ def _files(folder: str) -> list[str]:
 
 setup(
     name=NAME,
-    version="0.1.0",
+    version=PACKAGE.findtext("version"),
     packages=find_packages(include=[NAME, f"{NAME}.*"]),
     package_data={NAME: ["py.typed", "evaluation/*.csv", "evaluation/templates/*"]},
     data_files=[
@@ -92,11 +96,14 @@ setup(
     install_requires=["numpy>=1.26", "filterpy>=1.4.5"],
     extras_require=EXTRAS,
     zip_safe=True,
-    author="het_ros maintainers",
-    author_email="maintainers@het-ros.example.org",
-    maintainer="het_ros maintainers",
-    maintainer_email="maintainers@het-ros.example.org",
-    description="Follow one target on a camera stream; say so when it is lost.",
-    license="Apache-2.0",
-    entry_points={"console_scripts": [f"{cmd} = {mod}:main" for cmd, mod in COMMANDS.items()]},
+    author=MAINTAINER.text,
+    author_email=MAINTAINER.get("email"),
+    maintainer=MAINTAINER.text,
+    maintainer_email=MAINTAINER.get("email"),
+    description=" ".join(PACKAGE.findtext("description").split()),
+    license=PACKAGE.findtext("license"),
+    project_urls={url.get("type"): url.text for url in PACKAGE.findall("url")},
+    entry_points={
+        "console_scripts": [f"{PREFIX}{name} = {NAME}.commands:{name}" for name in COMMANDS]
+    },
 )

@@ -28,15 +28,21 @@ def generate_launch_description() -> LaunchDescription:
         DeclareLaunchArgument(name, default_value=default, description=meaning)
         for name, default, meaning in ARGUMENTS
     ]
-    arguments.append(
+    arguments += [
+        DeclareLaunchArgument(
+            "targets",
+            default_value=LaunchConfiguration("name"),
+            description="names of several nodes on the same images: left,right",
+        ),
         DeclareLaunchArgument(
             "params_file", default_value=default_file, description="every other parameter"
-        )
-    )
+        ),
+    ]
     tracker = Node(
         package="het_ros",
         executable="tracker",
-        name=LaunchConfiguration("name"),
+        # No name: it would be that of each target.
+        arguments=["--targets", LaunchConfiguration("targets")],
         namespace=LaunchConfiguration("namespace"),
         output="screen",
         parameters=[

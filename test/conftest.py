@@ -9,22 +9,52 @@ from __future__ import annotations
 
 import itertools
 import os
+import re
 import subprocess
 import sys
 from pathlib import Path
 
-import hypothesis
 import numpy as np
 import pytest
 from graph import EXECUTABLES, PATIENCE, ROOT, Graph
 from moving_target import FIRST_BOX, moving_target
 
-# A busy machine is no failure: no limit of time for an example.
-hypothesis.settings.register_profile("patient", deadline=None)
-hypothesis.settings.load_profile("patient")
+try:
+    import hypothesis
+except ModuleNotFoundError:  # tests that need it are skipped
+    pass
+else:
+    # A busy machine is no failure: no limit of time for an example.
+    hypothesis.settings.register_profile("patient", deadline=None)
+    hypothesis.settings.load_profile("patient")
+
+# What a machine with apt's ROS may be without: tests that need one of these are skipped by name.
+OPTIONAL = {
+    *("av", "distributed", "hypothesis", "jinja2", "joblib", "matplotlib", "rclpy", "rosbags"),
+    *("threadpoolctl", "tqdm", "yaml"),
+}
 
 # Fast DDS reads it once a process: it must be set before the first node.
 os.environ.setdefault("FASTRTPS_DEFAULT_PROFILES_FILE", str(ROOT / "config" / "fastdds_shm.xml"))
+
+
+class SkipWhatIsMissing:
+    """Skips a file or folder that imports what is not installed, and says what that is."""
+
+    @pytest.hookimpl(hookwrapper=True)
+    def pytest_make_collect_report(self):
+        outcome = yield
+        report = outcome.get_result()
+        missing = re.search(r"ModuleNotFoundError: No module named '(\w+)", str(report.longrepr))
+        if report.failed and missing and missing[1] in OPTIONAL:
+            report.outcome = "skipped"
+            reason = f"Skipped: needs {missing[1]}, which is not installed"
+            report.longrepr = (report.nodeid, 0, reason)
+
+
+def pytest_configure(config):
+    # A conftest's own hooks are not called for folders whose conftest fails.
+    config.pluginmanager.register(SkipWhatIsMissing())
 
 
 @pytest.fixture(scope="session")

@@ -32,8 +32,8 @@ from het_ros.tracking.paper.config import PaperConfig
 PARTS = ("core", "stages", "scaling", "node", "start")
 EXAMPLE = """\
 examples:
-  python -m het_ros.bench.cli --data ../shared/sequences --out out/bench --full
-  python -m het_ros.bench.cli --out out/try --quick --parts core,stages
+  ros2 run het_ros bench --data ../shared/sequences --out out/bench --full
+  ros2 run het_ros bench --out out/try --quick --parts core,stages
 """
 
 

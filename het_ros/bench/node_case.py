@@ -43,7 +43,7 @@ def main(arguments: list[str] | None = None) -> int:
     p = argparse.ArgumentParser(
         prog="node_case",
         description=__doc__,
-        epilog="example: python -m het_ros.bench.node_case --size 640x480 --rate 30 --how two",
+        epilog="example: python3 -m het_ros.bench.node_case --size 640x480 --rate 30 --how two",
     )
     p.add_argument("--size", default="640x480", help="of the images (640x480)")
     p.add_argument("--rate", type=float, default=30.0, help="frames/s (30)")

@@ -38,8 +38,9 @@ from het_ros.evaluation.video import write_videos
 
 EXAMPLE = """\
 examples:
-  evaluate --data ../shared/sequences --out out/dev --seeds 3
-  evaluate --data ../shared/sequences --out out/try --sequences Crossing,Woman --timing 0 \\
+  ros2 run het_ros evaluate --data ../shared/sequences --out out/dev --seeds 3
+  ros2 run het_ros evaluate --data ../shared/sequences --out out/try \\
+      --sequences Crossing,Woman --timing 0 \\
       --trackers het,het:sub_patches=5,small@het:small.yaml,csrt
   evaluate --compare out/before out/after
   evaluate --compare out/try:het out/try:small --out out/difference

@@ -46,7 +46,7 @@ PATIENCE = 60.0  # s
 MODULE = "het_ros.faults.cable"
 
 EXAMPLE = """example:
-  sudo -E python -m het_ros.faults.cable --seconds 5
+  sudo -E python3 -m het_ros.faults.cable --seconds 5
 """
 
 

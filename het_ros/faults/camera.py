@@ -43,9 +43,9 @@ BOX_EVERY = 30  # frames
 WAIT = 10.0  # s for somebody to listen
 
 EXAMPLE = """examples, with a tracker that runs with -p image_transport:=compressed:
-  python -m het_ros.faults.camera bags/follow_walk --lose 0.3
-  python -m het_ros.faults.camera bags/follow_walk --delay 0.2 --by 0.15 --rounds 10
-  python -m het_ros.faults.camera bags/follow_walk --jump 100,-5
+  ros2 run het_ros faulty_camera bags/follow_walk --lose 0.3
+  ros2 run het_ros faulty_camera bags/follow_walk --delay 0.2 --by 0.15 --rounds 10
+  ros2 run het_ros faulty_camera bags/follow_walk --jump 100,-5
 """
 
 

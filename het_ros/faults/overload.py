@@ -43,7 +43,7 @@ PATIENCE = 60.0  # s, for camera and tracker to find each other
 TARGET = (60, 120)  # px
 
 EXAMPLE = """example:
-  python -m het_ros.faults.overload --size 640x480 --seconds 20
+  ros2 run het_ros overload --size 640x480 --seconds 20
 """
 
 

@@ -49,8 +49,8 @@ LONGEST_LAG = 1.0  # s that are caught up with
 CALLBACKS = 8  # served a frame before the time is looked at
 
 EXAMPLE = """examples:
-  python -m het_ros.faults.soak --minutes 60 --out out/soak
-  python -m het_ros.faults.soak --minutes 2 --size 1280x720 -p sub_patches:=5
+  ros2 run het_ros soak --minutes 60 --out out/soak
+  ros2 run het_ros soak --minutes 2 --size 1280x720 -p sub_patches:=5
 """
 
 

@@ -34,7 +34,7 @@ from het_ros.tools.arguments import command
 BURN = "x = 1.0\nwhile True: x = x * 1.0000001 % 7.0"
 
 EXAMPLE = """example:
-  python -m het_ros.faults.stress --data ../shared/sequences --sequences Crossing,Woman
+  ros2 run het_ros stress --data ../shared/sequences --sequences Crossing,Woman
 """
 
 

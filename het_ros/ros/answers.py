@@ -5,23 +5,35 @@
 from __future__ import annotations
 
 import time
+from collections import deque
 
-from diagnostic_msgs.msg import DiagnosticArray
+from builtin_interfaces.msg import Time
+from std_msgs.msg import Float32, Header
 
 from het_ros.ros.debug_image import debug_message, drawn
 from het_ros.ros.detections import detections_message
 from het_ros.ros.diagnostics import Health
-from het_ros.ros.images import ImageError
-from het_ros.ros.messages import polygon_from_box, pose_from_estimate, twist_from_estimate
+from het_ros.ros.frames import Frame
+from het_ros.ros.images import ImageError, Pixels
+from het_ros.ros.messages import (
+    header_of,
+    polygon_from_box,
+    pose_from_estimate,
+    stamp_ns,
+    twist_from_estimate,
+)
 from het_ros.ros.outcome import Outcome
 from het_ros.ros.outputs import Outputs
 from het_ros.ros.parameters import NodeConfig
 from het_ros.ros.space import Space
 from het_ros.ros.stamps import SECOND
 from het_ros.ros.status import Status, status_message
-from het_ros.tracking.estimate import State
+from het_ros.tracking.box import Box
+from het_ros.tracking.estimate import Estimate, State
 
 SEEN = (State.TRACKING, State.COASTING)
+LARGEST_STAMP = (2**31 - 1) * SECOND  # ns that a header holds
+MOST_OWED = 8  # frames whose depth may still come
 
 
 class Answers:
@@ -44,14 +56,42 @@ class Answers:
         self._outputs = outputs
         self._space = space
         self._drawn = 0
+        self._owed: deque[tuple[Box, tuple[int, int], Header, int]] = deque(maxlen=MOST_OWED)
 
     def publish(self, outcome: Outcome) -> None:
-        """Publish an outcome; in LOST and without a track the status alone."""
+        """Publish an outcome; in LOST and without a track status and score alone."""
         if outcome.state in SEEN:
             self._publish_estimate(outcome)
-        self._outputs.send("status", lambda: self._status(outcome))
-        self.health.processed(time.monotonic() - outcome.frame.arrival)
-        self._draw(outcome)
+        frame, estimate = outcome.frame, outcome.estimate
+        status = Status(
+            state=outcome.state,
+            score=0.0 if estimate is None else float(estimate.score),
+            latency=time.monotonic() - frame.arrival,
+            age=outcome.age,
+            reason=outcome.reason,
+        )
+        self._tell(status, frame.header)
+        self.health.processed(time.monotonic() - frame.arrival)
+        self._draw(frame, frame.header, status, outcome.pixels, estimate)
+
+    def publish_silence(self, status: Status, newest: Frame | None, now: Time) -> None:
+        """Publish a status of its own while no image comes, and the newest image with it.
+
+        Its stamp is that of the newest image and the time since that came in, so that it follows
+        the camera's clock; ``now`` where no image came at all.
+        """
+        header = Header(stamp=now)
+        if newest is not None:
+            passed = round((time.monotonic() - newest.arrival) * SECOND)
+            stamp = min(stamp_ns(newest.header) + passed, LARGEST_STAMP)
+            header = header_of(stamp, newest.header.frame_id)
+        self._tell(status, header)
+        if newest is not None:
+            self._draw(newest, header, status)
+
+    def _tell(self, status: Status, header: Header) -> None:
+        self._outputs.send("status", lambda: status_message(status, self._name, header))
+        self._outputs.send("score", lambda: Float32(data=status.score))
 
     def _publish_estimate(self, outcome: Outcome) -> None:
         header, estimate, pixels = outcome.frame.header, outcome.estimate, outcome.pixels
@@ -66,33 +106,43 @@ class Answers:
         # The depth is looked at whoever listens: it may tell that the box holds another thing.
         # While COASTING it is that of what hides the target.
         if outcome.state is State.TRACKING:
-            place = self._space.pose(box, size, header, track)
-            send("target_pose", lambda: place)
+            self._place(box, size, header, track)
         if "detections" in self._outputs:
             send("detections", lambda: detections_message(estimate, track, header))
 
-    def _status(self, outcome: Outcome) -> DiagnosticArray:
-        status = Status(
-            state=outcome.state,
-            score=0.0 if outcome.estimate is None else float(outcome.estimate.score),
-            latency=time.monotonic() - outcome.frame.arrival,
-            age=outcome.age,
-            reason=outcome.reason,
-        )
-        return status_message(status, self._name, outcome.frame.header)
+    def place_late(self) -> None:
+        """Publish where the target was in frames whose depth came after they were answered."""
+        while self._owed and self._space.seen(self._owed[0][2]):
+            place = self._space.pose(*self._owed.popleft())
+            self._outputs.send("target_pose", lambda place=place: place)
 
-    def _draw(self, outcome: Outcome) -> None:
+    def _place(self, box: Box, size: tuple[int, int], header: Header, track: int) -> None:
+        """Publish where the target is, or keep in mind to do so when its depth comes."""
+        place = self._space.pose(box, size, header, track)
+        if place is not None:
+            self._owed.clear()  # no place comes after that of a later frame
+            self._outputs.send("target_pose", lambda: place)
+        elif not self._space.seen(header):
+            self._owed.append((box, size, header, track))
+
+    def _draw(
+        self,
+        frame: Frame,
+        header: Header,
+        status: Status,
+        pixels: Pixels | None = None,
+        estimate: Estimate | None = None,
+    ) -> None:
         """Draw the debug image for subscribers, ``debug_rate`` times a second at most."""
-        stamp = outcome.frame.stamp
+        stamp = stamp_ns(header) or frame.stamp
         early = 0 <= stamp - self._drawn < SECOND / self.settings.debug_rate
         if early or not self._outputs.heard("debug_image"):
             return
         self._drawn = stamp
-        pixels = outcome.pixels
         if pixels is None:
             try:
-                pixels = outcome.frame.pixels(self.settings.reading)
+                pixels = frame.pixels(self.settings.reading)
             except ImageError:
                 return
-        image = drawn(pixels, outcome.estimate, outcome.state, outcome.reason)
-        self._outputs.send("debug_image", lambda: debug_message(image, outcome.frame.header))
+        image = drawn(pixels, estimate, status.state, status.reason)
+        self._outputs.send("debug_image", lambda: debug_message(image, header))

@@ -12,13 +12,21 @@ from het_ros.ros.stamps import SECOND
 
 
 class Backlog:
-    """Frames in the order of their stamps; more than one only while a late box catches up."""
+    """Frames in the order of their stamps.
+
+    There is more than one while a late box catches up, or the oldest waits for its depth image.
+    """
 
     def __init__(self) -> None:
         self._frames: deque[Frame] = deque()
 
     def __len__(self) -> int:
         return len(self._frames)
+
+    @property
+    def next(self) -> Frame:
+        """The oldest frame, which is taken next."""
+        return self._frames[0]
 
     def add(self, frame: Frame) -> None:
         """Append a frame that is newer than all others."""

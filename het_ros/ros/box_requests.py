@@ -12,6 +12,8 @@ from het_ros.ros.messages import BoxError
 from het_ros.ros.stamps import SECOND
 from het_ros.tracking.box import Box
 
+ANOTHER_CLOCK = 60.0  # s: no detector is so late
+
 
 @dataclass(frozen=True)
 class Request:
@@ -86,6 +88,11 @@ class BoxRequests:
             return nearest
         self._void = request
         age = (newest.stamp - request.stamp) / SECOND
+        if age > ANOTHER_CLOCK:
+            raise BoxError(
+                f"its stamp is {age:.0f} s before the newest image's, which is another clock: "
+                "copy the header of the image that it was drawn on, or leave the stamp at zero"
+            )
         if age > ring.span:
             raise BoxError(
                 f"it was drawn on an image {age:.2f} s older than the newest, and images are kept "

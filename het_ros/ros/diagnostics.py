@@ -11,6 +11,9 @@ from builtin_interfaces.msg import Time
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
 from std_msgs.msg import Header
 
+from het_ros.ros.status import level_of
+from het_ros.tracking.estimate import State
+
 LATENCIES = 300  # the newest so many make the percentiles
 # What became of the images.
 COUNTED = ("processed", "duplicate", "late", "unreadable", "skipped", "dropped")
@@ -29,28 +32,37 @@ class Health:
         self._fresh += 1
 
     def report(
-        self, name: str, now: Time, seconds: float, counts: Counter[str], state: str, enabled: bool
+        self,
+        name: str,
+        camera: str,
+        now: Time,
+        seconds: float,
+        counts: Counter[str],
+        state: State,
+        enabled: bool,
+        trouble: str = "",
     ) -> DiagnosticArray:
-        """One status.
+        """One status, with the level that ``~/status`` has.
 
         Args:
             name: the node's full name.
+            camera: frame_id of the images.
             now: stamp.
             seconds: since the last report.
             counts: frames by what became of them, since the start.
             state: of the track.
             enabled: whether images are processed at all.
+            trouble: why none is processed, where that has lasted; else empty.
         """
         rate = self._fresh / seconds if seconds > 0 else 0.0
         self._fresh = 0
-        level, text = DiagnosticStatus.OK, f"{state}, {rate:.1f} frames/s"
+        level, text = level_of(state), f"{state.value}, {rate:.1f} frames/s"
         if not enabled:
-            text = "disabled or not active"
+            level, text = DiagnosticStatus.OK, "disabled or not active"
         elif rate == 0:
-            level, text = DiagnosticStatus.WARN, "no images"
-        elif state == "LOST":
-            level, text = DiagnosticStatus.WARN, f"the target is LOST, {rate:.1f} frames/s"
-        values = {"state": state, "rate_hz": f"{rate:.2f}"}
+            text = f"{state.value}: {trouble}" if trouble else "no images"
+            level = level_of(state, trouble=True)
+        values = {"state": state.value, "rate_hz": f"{rate:.2f}"}
         for key in COUNTED:
             values[key] = str(counts[key])
         for percent in (50, 95, 99):
@@ -60,7 +72,7 @@ class Health:
             level=level,
             name=f"{name.lstrip('/')}: tracking",
             message=text,
-            hardware_id=name,
+            hardware_id=camera,
             values=[KeyValue(key=key, value=value) for key, value in values.items()],
         )
         return DiagnosticArray(header=Header(stamp=now), status=[status])

@@ -25,10 +25,10 @@ from rclpy.clock import Clock, ClockType
 from rclpy.exceptions import ParameterException
 from rclpy.executors import ExternalShutdownException
 from rclpy.node import Node
-from rclpy.utilities import remove_ros_args
 
 from het_ros.ros.follower import Follower, FollowerConfig
 from het_ros.ros.parameters import declare, read
+from het_ros.ros.start import CtrlC, own_arguments, start_ros
 from het_ros.ros.status import status_values
 from het_ros.tracking.estimate import State
 
@@ -54,6 +54,11 @@ class FollowerNode(Node):
             ("target_pose", PoseStamped, self.on_target_pose),
         ):
             self.create_subscription(kind, f"tracker/{topic}", callback, 1)
+        config = self.follower.config
+        self.get_logger().info(
+            f"follows {self.resolve_topic_name('tracker/status')} at {config.distance:g} m, "
+            f"commands on {self.resolve_topic_name('cmd_vel')}"
+        )
         steady = Clock(clock_type=ClockType.STEADY_TIME)
         self.create_timer(1 / self.follower.config.rate, self.tick, clock=steady)
 
@@ -95,17 +100,22 @@ def main(args: list[str] | None = None) -> int:
         epilog="example: ros2 run het_ros follower_example --ros-args -p distance:=1.5 "
         "-r cmd_vel:=/robot/cmd_vel",
     )
-    parser.parse_args(remove_ros_args(argv)[1:])
-    try:
-        rclpy.init(args=argv)
-        rclpy.spin(FollowerNode())
-    except (KeyboardInterrupt, ExternalShutdownException):
-        pass
-    except (ParameterException, ValueError) as error:
-        print(f"follower_example: {error}", file=sys.stderr)
-        return 2
-    finally:
-        rclpy.try_shutdown()
+    with CtrlC() as ctrl_c:
+        try:
+            parser.parse_args(own_arguments(argv))
+            start_ros(argv)
+            if not ctrl_c.asked:
+                rclpy.spin(FollowerNode())
+        except ExternalShutdownException:
+            pass
+        except (ParameterException, ValueError) as error:
+            print(f"follower_example: {error}", file=sys.stderr)
+            return 2
+        except Exception:
+            if rclpy.ok():  # else a signal came while the node was being made
+                raise
+        finally:
+            rclpy.try_shutdown()
     return 0
 
 

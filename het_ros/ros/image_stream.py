@@ -6,11 +6,8 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable
-from contextlib import ExitStack
-from copy import copy
 from typing import Any
 
-from rclpy.clock import Clock, ClockType
 from rclpy.node import Node
 from rclpy.qos import QoSProfile, ReliabilityPolicy
 from sensor_msgs.msg import CompressedImage, Image
@@ -20,11 +17,16 @@ from het_ros.ros.frames import Conversion, Frame, ImageMessage
 from het_ros.ros.hints import Hints
 from het_ros.ros.losses import Losses
 from het_ros.ros.messages import stamp_ns
-from het_ros.ros.quality import explain_silence, overridable, subscription_events
+from het_ros.ros.offers import OfferedSubscription
+from het_ros.ros.silence import waiting_on
 
 # Depth 1: with a deeper queue a busy node works on old images, and latency grows by the depth.
 NEWEST_ONLY = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
 Look = Callable[[Frame], None]
+NO_TIME = (
+    "images carry no stamp, and under use_sim_time there is no time either: nobody publishes "
+    "/clock. Set header.stamp, publish /clock, or start with use_sim_time:=false"
+)
 
 
 class ImageStream:
@@ -33,20 +35,18 @@ class ImageStream:
     Args:
         node: subscribes, with its remappings and QoS parameters; active or not.
         compressed: whether CompressedImage is read instead of Image.
-        timeout: s after which the log says what is waited for if no image came; 0: never.
+        reliability: that is asked for, see :class:`OfferedSubscription`.
         hints: for what is wrong with the images.
     """
 
-    def __init__(self, node: Node, compressed: bool, timeout: float, hints: Hints) -> None:
+    def __init__(self, node: Node, compressed: bool, reliability: str, hints: Hints) -> None:
         self._node = node
         self._kind = CompressedImage if compressed else Image
         self._suffix = "/compressed" if compressed else ""
-        self._timeout = timeout
+        self._reliability = reliability
         self._hints = hints
         self._looking: list[Look] = []
-        self._open = ExitStack()
-        self._came = False
-        self._losses = Losses(lambda: int(self._subscription.get_publisher_count()))
+        self._losses = Losses(lambda: self._subscription.publishers)
 
     def join(self, look: Look) -> None:
         """Call ``look`` with every frame from now on."""
@@ -58,11 +58,10 @@ class ImageStream:
         """Call ``look`` no more."""
         self._looking.remove(look)
         if not self._looking:
-            self._open.close()
+            self._subscription.destroy()
 
     def take(self, message: ImageMessage) -> None:
         """Show one image to all who look."""
-        self._came = True
         arrival = time.monotonic()
         shared = Conversion(message) if len(self._looking) > 1 else None
         frame = Frame(message, self._stamp_of(message.header), arrival, shared)
@@ -80,33 +79,21 @@ class ImageStream:
         """Images that were published and never came: lost, or replaced by newer ones."""
         return self._losses.count
 
-    def on_silence(self) -> None:
-        """Once after the start: if no image came, say what is waited for."""
-        self._silence.cancel()
-        if not self._came:
-            text = explain_silence(self._node, self._subscription, self._timeout)
-            self._hints.once("silence", text)
+    def waiting_on(self) -> str:
+        """What is waited for while no image comes, for a log."""
+        kind, asked = self._kind.__name__, self._subscription.reliability
+        return waiting_on(self._node, self.topic, kind, asked)
 
     @property
     def topic(self) -> str:
         """Where images are taken from, while anybody looks."""
-        return str(self._subscription.topic_name)
+        return self._subscription.topic
 
     def _subscribe(self) -> None:
         topic = self._node.resolve_topic_name("image") + self._suffix
-        self._subscription = self._node.create_subscription(
-            self._kind,
-            topic,
-            self._on_message,
-            copy(NEWEST_ONLY),  # overrides are written into it
-            event_callbacks=subscription_events(self._node, topic),
-            qos_overriding_options=overridable(),
+        self._subscription = OfferedSubscription(
+            self._node, self._kind, topic, self._on_message, NEWEST_ONLY, self._reliability
         )
-        self._open.callback(self._node.destroy_subscription, self._subscription)
-        if self._timeout > 0:
-            steady = Clock(clock_type=ClockType.STEADY_TIME)  # runs under use_sim_time as well
-            self._silence = self._node.create_timer(self._timeout, self.on_silence, clock=steady)
-            self._open.callback(self._node.destroy_timer, self._silence)
 
     def _stamp_of(self, header: Header) -> int:
         """The image's stamp, or the time of arrival where a driver leaves it at zero, ns."""
@@ -115,5 +102,7 @@ class ImageStream:
             self._hints.once(
                 "no stamp", "images carry no stamp: the time of arrival is taken, set header.stamp"
             )
-            return int(self._node.get_clock().now().nanoseconds)
+            stamp = int(self._node.get_clock().now().nanoseconds)
+            if stamp == 0:
+                self._hints.once("no time", NO_TIME)
         return stamp

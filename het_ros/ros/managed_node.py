@@ -13,6 +13,10 @@ from lifecycle_msgs.srv import ChangeState
 from rclpy.lifecycle import LifecycleNode, LifecycleState, TransitionCallbackReturn
 
 
+class StartError(RuntimeError):
+    """A node that could not be configured or activated; the text says why."""
+
+
 class ManagedNode(LifecycleNode):
     """The four transitions as plain methods to fill in, which may raise what they like.
 
@@ -34,6 +38,7 @@ class ManagedNode(LifecycleNode):
         self.configured = ExitStack()
         self.activated = ExitStack()
         self._failure: Exception | None = None
+        self._starting = False  # then the one who starts tells what fails
         self._guard_transitions()
 
     def configure(self) -> None:
@@ -43,10 +48,17 @@ class ManagedNode(LifecycleNode):
         """Begin the work that lasts until the node is deactivated."""
 
     def start(self) -> None:
-        """Configure and activate without a manager; raises RuntimeError with the reason."""
+        """Configure and activate without a manager.
+
+        Raises:
+            StartError: it did not come so far.
+        """
+        self._starting = True
         for transition in (self.trigger_configure, self.trigger_activate):
             if transition() is not TransitionCallbackReturn.SUCCESS:
-                raise RuntimeError(f"the node did not start: {self._failure!r}")
+                wrong = isinstance(self._failure, ValueError)
+                raise StartError(str(self._failure) if wrong else repr(self._failure))
+        self._starting = False
 
     def on_configure(self, state: LifecycleState) -> TransitionCallbackReturn:
         """Unconfigured -> inactive."""
@@ -63,11 +75,13 @@ class ManagedNode(LifecycleNode):
     def on_deactivate(self, state: LifecycleState) -> TransitionCallbackReturn:
         """Active -> inactive."""
         self.activated.close()
+        self.get_logger().info("deactivated: no images are taken")
         return super().on_deactivate(state)
 
     def on_cleanup(self, state: LifecycleState) -> TransitionCallbackReturn:
         """Inactive -> unconfigured."""
         self.configured.close()
+        self.get_logger().info("cleaned up")
         return super().on_cleanup(state)
 
     def on_shutdown(self, state: LifecycleState) -> TransitionCallbackReturn:
@@ -113,6 +127,7 @@ class ManagedNode(LifecycleNode):
         except Exception as error:
             undo.close()
             self._failure = error
-            self.get_logger().fatal(f"{work.__name__} failed: {error!r}")
+            if not self._starting:
+                self.get_logger().fatal(f"{work.__name__} failed: {error!r}")
             return False
         return True

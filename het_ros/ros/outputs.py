@@ -19,8 +19,9 @@ from geometry_msgs.msg import (
 from rclpy.node import Node
 from rclpy.qos import QoSProfile, ReliabilityPolicy
 from sensor_msgs.msg import Image
+from std_msgs.msg import Float32
 
-from het_ros.ros.quality import overridable, publisher_events
+from het_ros.ros.quality import checked, overridable, publisher_events
 
 Tap = Callable[[str, Any], None]
 
@@ -31,10 +32,26 @@ OUTPUTS: dict[str, type] = {
     "pose": PoseWithCovarianceStamped,
     "velocity": TwistWithCovarianceStamped,
     "status": DiagnosticArray,
+    "score": Float32,
     "bearing": Vector3Stamped,
     "target_pose": PoseStamped,
     "debug_image": Image,
 }
+
+
+def make_publisher(node: Node, kind: type, topic: str) -> Any:
+    """A reliable publisher that parameters may change; raises ValueError where they are wrong."""
+    return checked(
+        lambda: node.create_publisher(
+            kind,
+            topic,
+            copy(RELIABLE),  # overrides are written into it
+            event_callbacks=publisher_events(node, topic),
+            qos_overriding_options=overridable(),
+        ),
+        node.resolve_topic_name(topic),
+        "publisher",
+    )
 
 
 class Outputs:
@@ -52,13 +69,7 @@ class Outputs:
         self._publishers = {topic: self._publisher(topic, kind) for topic, kind in kinds.items()}
 
     def _publisher(self, topic: str, kind: type) -> Any:
-        return self._node.create_publisher(
-            kind,
-            f"~/{topic}",
-            copy(RELIABLE),  # overrides are written into it
-            event_callbacks=publisher_events(self._node, f"~/{topic}"),
-            qos_overriding_options=overridable(),
-        )
+        return make_publisher(self._node, kind, f"~/{topic}")
 
     def __contains__(self, topic: str) -> bool:
         return topic in self._publishers

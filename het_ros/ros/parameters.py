@@ -43,6 +43,12 @@ class NodeConfig:
         "parameters only `seed`; with the next box",
         choices=("het", "paper"),
     )
+    reliability: str = parameter(
+        "auto",
+        "asked for of images and depth: auto takes the best that all their publishers offer",
+        choices=("auto", "reliable", "best_effort"),
+        read_only=True,
+    )
     white_level: int = parameter(
         65535,
         "value of a 16-bit image that counts as white; 4095 for a 12-bit camera",
@@ -93,6 +99,14 @@ class NodeConfig:
         low=0.0,
         high=10.0,
     )
+    depth_wait: float = parameter(
+        0.1,
+        "an image waits for its depth image at most this long, where depth comes in; 0: not at "
+        "all, and ~/target_pose of that image follows when its depth comes",
+        unit="s",
+        low=0.0,
+        high=2.0,
+    )
     depth_witness: bool = parameter(
         True,
         "with depth, whatever else comes into the box, a column before the target or the wall "
@@ -115,7 +129,8 @@ class NodeConfig:
     )
     image_timeout: float = parameter(
         5.0,
-        "no image for this long after the start: the log says what is waited for; 0: never",
+        "no new image for this long: the log says why, ~/status says LOST (IDLE without a "
+        "track) and the reason once a second until images come again; 0: never",
         unit="s",
         low=0.0,
         high=3600.0,

@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import time
 from collections import Counter
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Any
 
 from std_msgs.msg import Header
@@ -32,6 +32,8 @@ from het_ros.tracking.estimate import Estimate, State
 from het_ros.tracking.tracker import Witness
 
 FrameWitness = Callable[[Box, tuple[int, int], Header, int], bool]
+Patience = Callable[[Frame], float]
+Suggest = Callable[[Box, float, int], Sequence[Box]]
 
 
 class Pursuit:
@@ -45,6 +47,9 @@ class Pursuit:
         logger: of the node.
         witness: another sensor, asked whether a track's target may be in a box of an image of
             that size (width, height) px and header.
+        patience: s that a frame is to wait until that sensor has seen it too.
+        suggest: where else to look for a target that was last thought to be in a box and has not
+            been seen for so long (s), in the image with a stamp (ns).
 
     Attributes:
         session: the track.
@@ -58,6 +63,8 @@ class Pursuit:
         settings: NodeConfig,
         logger: Any,
         witness: FrameWitness | None = None,
+        patience: Patience = lambda frame: 0.0,
+        suggest: Suggest = lambda box, hidden, stamp: (),
     ) -> None:
         self.session = TrackingSession(config, settings.max_gap, settings.tracker)
         self.counts: Counter[str] = Counter()
@@ -65,6 +72,8 @@ class Pursuit:
         self.settings = settings
         self._logger = logger
         self._witness = witness
+        self._patience = patience
+        self._suggest = suggest
         self._hints = Hints(logger)
         self._starts, self._refusals, self._ends = Ration(), Ration(), Ration()
         self._gate = StampGate(settings.jump_back)
@@ -78,6 +87,17 @@ class Pursuit:
     def busy(self) -> bool:
         """Whether frames wait for :meth:`step`."""
         return len(self._backlog) > 0
+
+    @property
+    def newest(self) -> Frame | None:
+        """The newest frame; None before the first."""
+        return self._ring.newest
+
+    @property
+    def left(self) -> float:
+        """How much longer the next frame waits for another sensor, s; 0 without a track."""
+        needed = self.session.running or self._requests.waiting is not None
+        return self._patience(self._backlog.next) if self.busy and needed else 0.0
 
     def configure(self, config: TrackerConfig, settings: NodeConfig) -> None:
         """Take new parameters: the node's at once, the tracker's with the next box."""
@@ -145,7 +165,8 @@ class Pursuit:
         if pixels is not None:
             estimate = self._started(frame, pixels) or self._followed(frame, pixels)
         self.counts["processed"] += 1
-        if hurry and self.busy:
+        # Frames that wait for another sensor are not behind for want of time.
+        if hurry and self.busy and not self.left:
             self.counts["skipped"] += self._backlog.skip(time.monotonic() - begin)
         return self._outcome(frame, pixels, estimate)
 
@@ -181,7 +202,11 @@ class Pursuit:
         before = self.session.state
         try:
             estimate = self.session.follow(
-                pixels, frame.stamp, frame.header.frame_id, self._witness_of(frame, pixels)
+                pixels,
+                frame.stamp,
+                frame.header.frame_id,
+                self._witness_of(frame, pixels),
+                self._candidates(frame),
             )
         except Exception as error:  # a robot must hear LOST, whatever went wrong in here
             self._logger.error(f"the tracker failed on an image: {error!r}")
@@ -198,6 +223,13 @@ class Pursuit:
             return None
         size = pixels.shape[1], pixels.shape[0]
         return lambda box: ask(box, size, frame.header, self.track)
+
+    def _candidates(self, frame: Frame) -> Sequence[Box]:
+        """Where a target that was not seen in the last frame is to be looked for first."""
+        session = self.session
+        if session.box is None or session.state is State.TRACKING:
+            return ()
+        return self._suggest(session.box, session.age, frame.stamp)
 
     def _pixels(self, frame: Frame) -> Pixels | None:
         """The frame's image; None where no one needs it and its like could be read before."""

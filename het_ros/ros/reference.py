@@ -1,6 +1,6 @@
 # Copyright 2026 het_ros maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""Writes what is generated from the parameter tables: ``python -m het_ros.ros.reference``.
+"""Writes what is generated from the parameter tables: ``python3 -m het_ros.ros.reference``.
 
 That is ``config/tracker.yaml`` and ``docs/PARAMETERS.md``. A test fails when one is stale.
 """
@@ -98,7 +98,7 @@ def main(arguments: list[str] | None = None) -> int:
     """Write the generated files of a checkout."""
     parser = argparse.ArgumentParser(
         description="Write the files that are generated from the parameter tables.",
-        epilog="example: python -m het_ros.ros.reference .",
+        epilog="example: python3 -m het_ros.ros.reference .",
     )
     parser.add_argument("checkout", type=Path, nargs="?", default=Path())
     checkout = parser.parse_args(arguments).checkout

@@ -4,6 +4,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import cv2
@@ -38,6 +39,7 @@ class TrackingSession:
         state: of the track; IDLE or LOST without one.
         reason: why the state is not TRACKING, in words; empty while it is.
         age: s since the target was last measured.
+        box: where the target was last estimated, px; None without a track.
     """
 
     def __init__(self, config: TrackerConfig, max_gap: float, tracker: str = "het") -> None:
@@ -47,6 +49,7 @@ class TrackingSession:
         self.state = State.IDLE
         self.reason = "waiting for a box"
         self.age = 0.0
+        self.box: Box | None = None
         self._tracker: HierarchicalEnsembleTracker | PaperTracker | None = None
         self._shape: tuple[int, ...] = ()
         self._source = ""
@@ -80,11 +83,16 @@ class TrackingSession:
         return estimate
 
     def follow(
-        self, image: Pixels, stamp: int, source: str = "", witness: Witness | None = None
+        self,
+        image: Pixels,
+        stamp: int,
+        source: str = "",
+        witness: Witness | None = None,
+        candidates: Sequence[Box] = (),
     ) -> Estimate | None:
         """The estimate for the next frame, or None where there is no track or it ends here.
 
-        ``witness`` is asked by :meth:`HierarchicalEnsembleTracker.update`.
+        ``witness`` and ``candidates`` are those of :meth:`HierarchicalEnsembleTracker.update`.
         """
         if self._tracker is None:
             return None
@@ -94,7 +102,8 @@ class TrackingSession:
             self.lose(broken)
             return None
         pixels = _with_channels_of(image, self._shape)
-        estimate = _finite(self._tracker.update(pixels, gap, witness))
+        more = {"candidates": candidates} if candidates else {}
+        estimate = _finite(self._tracker.update(pixels, gap, witness, **more))
         self._stamp = stamp
         if estimate.state is State.TRACKING:
             self._seen = stamp
@@ -111,7 +120,7 @@ class TrackingSession:
 
     def _end(self, state: State, reason: str) -> None:
         self._tracker = None
-        self.state, self.reason, self.age = state, reason, 0.0
+        self.state, self.reason, self.age, self.box = state, reason, 0.0, None
 
     def _break(self, image: Pixels, gap: float, source: str) -> str:
         """Why the track cannot go on with this frame; empty where it can."""
@@ -130,7 +139,7 @@ class TrackingSession:
         return ""
 
     def _take(self, estimate: Estimate) -> None:
-        self.state = estimate.state
+        self.state, self.box = estimate.state, estimate.box
         self.age = (self._stamp - self._seen) / SECOND
         self.reason = "" if self.state is State.TRACKING else f"not seen for {self.age:.2f} s"
 

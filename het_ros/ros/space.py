@@ -13,6 +13,8 @@ from sensor_msgs.msg import CameraInfo, Image
 from std_msgs.msg import Header
 
 from het_ros.ros.depth import DepthError, metres_of, pose_at
+from het_ros.ros.depth_wait import SAME, STRANGE, DepthWait
+from het_ros.ros.frames import Frame
 from het_ros.ros.hints import Hints
 from het_ros.ros.images import ImageError, check_size
 from het_ros.ros.messages import stamp_ns
@@ -22,34 +24,63 @@ from het_ros.ros.stamps import SECOND
 from het_ros.ros.target_depth import TargetDepth
 from het_ros.tracking.box import Box
 
-DEPTHS = 5  # depth images that are kept: one of them belongs to the image in work
+MISSED = 5  # frames in a row without depth: that is no chance
+DEPTHS = 8  # depth images that are kept: one of them belongs to the image in work
 
 
 class Space:
     """Camera model and depth of one camera.
 
     Attributes:
-        settings: the node's parameters.
+        wait: how long images wait for depth.
+        came: inputs of which there was at least one: "camera_info", "depth".
     """
 
     def __init__(self, settings: NodeConfig, hints: Hints) -> None:
+        self.wait = DepthWait(settings.depth_wait)
+        self.came: set[str] = set()
         self.settings = settings
         self._hints = hints
         self._info: CameraInfo | None = None
         self._target = TargetDepth()
+        self._missed = 0
         self._depths: deque[Image] = deque(maxlen=DEPTHS)
         self._converted: tuple[Image, NDArray[float32]] | None = None
+
+    @property
+    def settings(self) -> NodeConfig:
+        """The node's parameters."""
+        return self._settings
+
+    @settings.setter
+    def settings(self, settings: NodeConfig) -> None:
+        self._settings = settings
+        self.wait.limit = settings.depth_wait
 
     def forget(self) -> None:
         """Forget the targets' depths: tracks are counted from 1 again."""
         self._target = TargetDepth()
 
+    def patience(self, frame: Frame) -> float:
+        """How much longer a frame is to wait for its depth image, s."""
+        left = self.wait.left(stamp_ns(frame.header), frame.arrival)
+        if self.wait.in_vain:
+            self._hints.once(
+                "depth wait",
+                f"depth images come later than depth_wait ({self.wait.limit:g} s) after their "
+                "images, which are followed without: raise depth_wait. ~/target_pose comes when "
+                "the depth does",
+            )
+        return left
+
     def on_camera_info(self, message: CameraInfo) -> None:
         """Take the newest calibration."""
         self._info = message
+        self.came.add("camera_info")
 
     def on_depth(self, message: Image) -> None:
         """Keep a depth image, unless it is larger than images may be."""
+        self.came.add("depth")
         try:
             # What is kept is the data, whatever size the message claims: 4 bytes make a px.
             check_size(message.width, message.height, self.settings.reading.most)
@@ -57,7 +88,11 @@ class Space:
         except ImageError as error:
             self._hints.once("depth size", f"depth image refused: {error}")
             return
+        stamp = stamp_ns(message.header)
+        if self._depths and stamp < stamp_ns(self._depths[-1].header) - STRANGE * SECOND:
+            self._depths.clear()  # time went back
         self._depths.append(message)
+        self.wait.depth(stamp)
 
     def bearing(self, box: Box, size: tuple[int, int], header: Header) -> Vector3Stamped | None:
         """The ray through the box's centre, or None where no usable camera_info came."""
@@ -72,6 +107,7 @@ class Space:
         if depth_image is None:
             self._explain_no_depth(header)
             return None
+        self._missed = 0
         self._compare_frames(depth_image, header)
         try:
             metres = self._metres(depth_image)
@@ -81,6 +117,11 @@ class Space:
         except (DepthError, ImageError) as error:
             self._hints.once(f"depth {type(error).__name__}", f"no ~/target_pose: {error}")
             return None
+
+    def seen(self, header: Header) -> bool:
+        """Whether depth came of an image, or of a later one: no nearer depth is to come."""
+        first = stamp_ns(header) - SAME * SECOND
+        return any(stamp_ns(depth.header) >= first for depth in self._depths)
 
     def may_hold(self, box: Box, size: tuple[int, int], header: Header, track: int) -> bool:
         """Whether a box may hold the track's target; True where there is no depth to tell it."""
@@ -132,7 +173,8 @@ class Space:
 
     def _explain_no_depth(self, header: Header) -> None:
         nearest, off = self._nearest_depth(header)
-        if nearest is not None:
+        self._missed += 1
+        if nearest is not None and self._missed == MISSED:
             self._hints.once(
                 "depth stamp",
                 f"no ~/target_pose: the nearest depth image is {off:.3f} s off the image, and "

@@ -11,12 +11,18 @@ from std_msgs.msg import Header
 
 from het_ros.tracking.estimate import State
 
+# The same on ~/status and /diagnostics.
 LEVELS = {
     State.IDLE: DiagnosticStatus.OK,
     State.TRACKING: DiagnosticStatus.OK,
     State.COASTING: DiagnosticStatus.WARN,
     State.LOST: DiagnosticStatus.ERROR,
 }
+
+
+def level_of(state: State, trouble: bool = False) -> bytes:
+    """The level that a state is told with; at least WARN while no images come in."""
+    return max(LEVELS[state], DiagnosticStatus.WARN) if trouble else LEVELS[state]
 
 
 @dataclass(frozen=True)
@@ -29,6 +35,7 @@ class Status:
         latency: s from the frame's arrival to the status.
         age: s since the target was last measured; 0 while it is, and without a target.
         reason: why the state is not TRACKING; empty while it is.
+        trouble: whether no images come in.
     """
 
     state: State
@@ -36,6 +43,7 @@ class Status:
     latency: float
     age: float
     reason: str
+    trouble: bool = False
 
 
 def status_message(status: Status, name: str, header: Header) -> DiagnosticArray:
@@ -52,10 +60,10 @@ def status_message(status: Status, name: str, header: Header) -> DiagnosticArray
         header=header,
         status=[
             DiagnosticStatus(
-                level=LEVELS[status.state],
+                level=level_of(status.state, status.trouble),
                 name=name,
                 message=text,
-                hardware_id="",
+                hardware_id=header.frame_id,  # the camera's
                 values=[KeyValue(key=key, value=value) for key, value in values.items()],
             )
         ],

@@ -2,5 +2,5 @@
 # SPDX-License-Identifier: Apache-2.0
 """Bags in, results out: make a bag, play it to a running tracker, replay it, look at the answers.
 
-Each command is a module: ``python -m het_ros.tools.make_bag``, ``play``, ``replay``, ``run``.
+Each command is an executable as well: ``ros2 run het_ros play``, ``run``, ``replay``...
 """

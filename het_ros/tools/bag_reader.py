@@ -208,7 +208,7 @@ def _source(path: Path) -> Path:
     if not is_whole(files[0]):
         raise BagError(
             f"{path} was cut off while it was recorded: "
-            f"`python -m het_ros.tools.bag_repair {files[0]}` ends it so that it can be read"
+            f"`ros2 run het_ros bag_repair {files[0]}` ends it so that it can be read"
         )
     return files[0]
 

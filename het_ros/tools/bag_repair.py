@@ -27,7 +27,7 @@ END = (
 )
 
 EXAMPLE = """example:
-  python -m het_ros.tools.bag_repair out/play/bag/bag.mcap
+  ros2 run het_ros bag_repair out/play/bag/bag.mcap
 """
 
 

@@ -143,7 +143,7 @@ class BagWriter:
         except OSError:
             raise BagWriteError(
                 f"{self.path} cannot be written: {_words(why)}; what is there can be read after "
-                f"`python -m het_ros.tools.bag_repair {self._file}` on a disk with space"
+                f"`ros2 run het_ros bag_repair {self._file}` on a disk with space"
             ) from why
         raise BagWriteError(
             f"{self.path} cannot be written to its end: {_words(why)}; "

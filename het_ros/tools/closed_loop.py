@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """A rendered robot that follows a rendered figure with the real tracker and follower nodes.
 
-``python -m het_ros.tools.closed_loop --out out/loop`` renders what the robot's camera sees, feeds
+``ros2 run het_ros closed_loop --out out/loop`` renders what the robot's camera sees, feeds
 the tracker node, lets the follower node drive, moves the robot, and so on for a minute.
 """
 
@@ -213,7 +213,7 @@ def main(arguments: list[str] | None = None) -> int:
     parser = argparse.ArgumentParser(
         prog="closed_loop",
         description="Let a rendered robot follow a rendered figure with the real nodes.",
-        epilog="example: python -m het_ros.tools.closed_loop --out out/loop --seed 2",
+        epilog="example: ros2 run het_ros closed_loop --out out/loop --seed 2",
     )
     parser.add_argument("--out", type=Path, default=Path("out/loop"), help="folder (out/loop)")
     parser.add_argument("--seed", type=int, default=0, help="of the scene (0)")

@@ -35,8 +35,8 @@ DEFAULT_RATE = 30.0
 VIDEO_JPEG_QUALITY = 95
 
 EXAMPLE = """examples:
-  python -m het_ros.tools.make_bag sequences/Crossing out/crossing_bag
-  python -m het_ros.tools.make_bag vtest.avi out/vtest_bag --init 258,219,33,89
+  ros2 run het_ros make_bag sequences/Crossing out/crossing_bag
+  ros2 run het_ros make_bag vtest.avi out/vtest_bag --init 258,219,33,89
 """
 
 

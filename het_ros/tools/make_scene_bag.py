@@ -31,8 +31,8 @@ from het_ros.tools.make_bag import FIRST_STAMP, FRAME_ID
 CAMERA_INFO_TOPIC = "/camera_info"
 
 EXAMPLE = """examples:
-  python -m het_ros.tools.make_scene_bag bags/follow_walk --seed 11 --rate 15 --quality 36
-  python -m het_ros.tools.make_scene_bag out/hidden --story hidden_2s
+  ros2 run het_ros make_scene_bag bags/follow_walk --seed 11 --rate 15 --quality 36
+  ros2 run het_ros make_scene_bag out/hidden --story hidden_2s
 """
 
 _TYPES = TYPESTORE.types

@@ -20,6 +20,7 @@ from het_ros.tools.bag_writer import BagWriter
 from het_ros.tools.handshake import LONGEST_SPIN, NobodyListensError, Spin, wait_until_known
 from het_ros.tools.interrupt import StopRequest
 from het_ros.tools.outputs import DEFAULT_TRACKER
+from het_ros.tools.play_clock import PlayClock
 from het_ros.tools.player import Player
 from het_ros.tools.recorder import Recorder
 from het_ros.tools.report import ResultsFolder, write_report
@@ -31,7 +32,7 @@ LAST_ANSWER = 2.0  # s of silence after which no more answers are expected
 
 EXAMPLE = """example, in two terminals:
   ros2 run het_ros tracker --ros-args -p image_transport:=compressed
-  python -m het_ros.tools.play bags/follow_walk --out out/play
+  ros2 run het_ros play bags/follow_walk --out out/play
 
 Topics are remapped like any node's: add --ros-args -r /image:=/camera/image_raw
 """
@@ -46,6 +47,8 @@ def play(
     rate: float = 1.0,
     init: Box | None = None,
     wait: float = WAIT,
+    without_box: bool = False,
+    now: bool = False,
     ros_arguments: Sequence[str] = (),
     alive: Callable[[], None] = lambda: None,
 ) -> list[int]:
@@ -59,6 +62,8 @@ def play(
         rate: 1 is real time, 2 twice as fast.
         init: target in the first frame, px; by default the bag's own init box.
         wait: s for the tracker to be there.
+        without_box: leave the bag's own init box out: somebody else sends one.
+        now: stamp everything with the time of the play; what is recorded has the bag's stamps.
         ros_arguments: of the playing node, from ``--ros-args`` on.
         alive: called often; may raise when playing on makes no sense.
 
@@ -84,11 +89,14 @@ def play(
             executor.spin_once(timeout_sec=seconds)
 
         with BagWriter(recording) as bag_of_answers:
-            player = Player(node, bag, tracker, init)
-            recorder = Recorder(node, bag_of_answers, tracker)
+            clock = PlayClock(rate) if now else None
+            player = Player(node, bag, tracker, init, without_box, clock)
+            recorder = Recorder(node, bag_of_answers, tracker, clock)
             player.wait_for_subscriber(spin, wait, stop)
             _wait_for_tracker(recorder, tracker, spin, wait, stop)
             wait_until_known(node, tracker, spin, wait, stop)
+            if clock is not None:
+                clock.begin(time.time_ns())
             return _play_and_record(player, recorder, spin, rate, stop)
     finally:
         node.destroy_node()
@@ -135,6 +143,8 @@ def main(argv: Sequence[str] | None = None) -> int:
     add_bag(parser, out="out/play")
     parser.add_argument("--rate", type=float, default=1.0, help="2 plays twice as fast")
     parser.add_argument("--tracker", default=DEFAULT_TRACKER, help="the tracker node's full name")
+    parser.add_argument("--no-box", action="store_true", help="leave out the bag's own init box")
+    parser.add_argument("--now", action="store_true", help="stamp all with the time of the play")
     parser.add_argument("--wait", type=float, default=WAIT, help="s to wait for the tracker")
     options = parser.parse_args(own)
     folder = ResultsFolder(options.out)
@@ -149,6 +159,8 @@ def main(argv: Sequence[str] | None = None) -> int:
                 rate=options.rate,
                 init=options.init,
                 wait=options.wait,
+                without_box=options.no_box,
+                now=options.now,
                 ros_arguments=ros,
             )
             summary = write_report(bag, stamps, folder, tracker=options.tracker)

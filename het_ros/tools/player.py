@@ -23,6 +23,7 @@ from het_ros.tools.bag_writer import TYPESTORE
 from het_ros.tools.handshake import LONGEST_SPIN, NobodyListensError, Spin
 from het_ros.tools.interrupt import StopRequest
 from het_ros.tools.message_types import check_types, message_class
+from het_ros.tools.play_clock import PlayClock, restamped
 from het_ros.tracking.box import Box
 
 PLAYED_TYPES = (
@@ -32,25 +33,29 @@ PLAYED_TYPES = (
     "sensor_msgs/msg/CameraInfo",
     "sensor_msgs/msg/RegionOfInterest",
 )
+STAMPED = set(PLAYED_TYPES) - {"sensor_msgs/msg/RegionOfInterest"}
 QOS = QoSProfile(depth=10, reliability=ReliabilityPolicy.RELIABLE)
 CATCH_UP = 0.8  # of the time between two messages is kept even when a play is late
 
 
-def timeline(bag: BagReader, init: Box | None = None) -> Iterator[Recorded]:
+def timeline(
+    bag: BagReader, init: Box | None = None, without_box: bool = False
+) -> Iterator[Recorded]:
     """What is to be played of a bag, in the order of recording.
 
     Args:
         bag: its image, camera info and box topics are taken.
         init: a target to start with, px; it is put after the first image, with its stamp, and
             the bag's own init boxes are left out.
+        without_box: leave the bag's own init boxes out in any case.
 
     Raises:
         BagError: the bag has no images, or a type that is not ROS 2 Jazzy's.
     """
-    topics = played_topics(bag, init)
+    topics = played_topics(bag, init, without_box)
     sent = False
     for recorded in bag.recorded(*(topic for topic in topics if topic in bag.topics)):
-        if init and recorded.topic == INIT_BOX_TOPIC:
+        if (init or without_box) and recorded.topic == INIT_BOX_TOPIC:
             continue
         yield recorded
         if init and not sent and recorded.topic == bag.image_topic:
@@ -60,7 +65,9 @@ def timeline(bag: BagReader, init: Box | None = None) -> Iterator[Recorded]:
             sent = True
 
 
-def played_topics(bag: BagReader, init: Box | None = None) -> dict[str, str]:
+def played_topics(
+    bag: BagReader, init: Box | None = None, without_box: bool = False
+) -> dict[str, str]:
     """Topic and type of all that :func:`timeline` yields, each type checked.
 
     Raises:
@@ -71,6 +78,8 @@ def played_topics(bag: BagReader, init: Box | None = None) -> dict[str, str]:
         raise BagError(f"{bag.path} has no images to play; it holds {listed}")
     topics = {topic: kind for topic, kind in bag.topics.items() if kind in PLAYED_TYPES}
     check_types(bag, list(topics))
+    if without_box:
+        topics.pop(INIT_BOX_TOPIC, None)
     return topics | {INIT_BOX_TOPIC: POLYGON} if init else topics
 
 
@@ -82,15 +91,27 @@ class Player:
         bag: what to play, see :func:`timeline`.
         tracker: full name of the tracker's node; init boxes go to its ``~/init_box``.
         init: a target to start with instead of the bag's own.
+        without_box: leave the bag's own init boxes out: who plays sends one.
+        clock: stamps everything anew; by default stamps stay as they are.
 
     Raises:
         BagError: the bag has no images, or a type that is not ROS 2 Jazzy's.
     """
 
-    def __init__(self, node: Node, bag: BagReader, tracker: str, init: Box | None = None) -> None:
+    def __init__(
+        self,
+        node: Node,
+        bag: BagReader,
+        tracker: str,
+        init: Box | None = None,
+        without_box: bool = False,
+        clock: PlayClock | None = None,
+    ) -> None:
         self.bag = bag
         self.init = init
-        topics = played_topics(bag, init)
+        self._without_box = without_box
+        self._clock = clock
+        topics = played_topics(bag, init, without_box)
         self._publishers = {
             topic: node.create_publisher(
                 message_class(kind),
@@ -119,8 +140,11 @@ class Player:
             spin(LONGEST_SPIN)
 
     def publish(self, recorded: Recorded) -> None:
-        """Send one message as it is."""
-        self._publishers[recorded.topic].publish(recorded.cdr)
+        """Send one message as it is, or with the time of the play."""
+        cdr = recorded.cdr
+        if self._clock is not None and recorded.kind in STAMPED:
+            cdr = restamped(cdr, self._clock.played(header_stamp(cdr)))
+        self._publishers[recorded.topic].publish(cdr)
 
     def in_real_time(self, spin: Spin, rate: float, stop: StopRequest) -> Iterator[Recorded]:
         """Publish every message when it is due and hand it on.
@@ -135,7 +159,7 @@ class Player:
         """
         previous: int | None = None
         due = published = time.monotonic()
-        for recorded in timeline(self.bag, self.init):
+        for recorded in timeline(self.bag, self.init, self._without_box):
             step = 0.0 if previous is None else (recorded.time - previous) * 1e-9 / rate
             due, previous = due + step, recorded.time
             due_now = max(due, published + CATCH_UP * step)

@@ -14,6 +14,7 @@ from het_ros.tools.bag_reader import header_stamp
 from het_ros.tools.bag_writer import BagWriter
 from het_ros.tools.message_types import message_class
 from het_ros.tools.outputs import DEFAULT_TRACKER, OUTPUT_TYPES
+from het_ros.tools.play_clock import PlayClock, restamped
 
 QOS = QoSProfile(depth=1000, reliability=ReliabilityPolicy.RELIABLE)
 
@@ -28,13 +29,21 @@ class Recorder:
         node: makes the subscriptions; somebody spins it.
         bag: open bag to write to.
         tracker: full name of the tracker's node.
+        clock: of a play with stamps of its own; the recording has the bag's.
 
     Attributes:
         answered: stamps (ns) of the frames for which a status came.
     """
 
-    def __init__(self, node: Node, bag: BagWriter, tracker: str = DEFAULT_TRACKER) -> None:
+    def __init__(
+        self,
+        node: Node,
+        bag: BagWriter,
+        tracker: str = DEFAULT_TRACKER,
+        clock: PlayClock | None = None,
+    ) -> None:
         self._bag = bag
+        self._clock = clock
         self.answered: set[int] = set()
         self._status_topic = f"{tracker}/status"
         self._subscriptions = [
@@ -57,6 +66,9 @@ class Recorder:
     def _writing(self, topic: str, kind: str) -> Callable[[bytes], None]:
         def write(cdr: bytes) -> None:
             stamp = header_stamp(cdr)
+            if self._clock is not None:
+                stamp = self._clock.recorded(stamp)
+                cdr = restamped(bytes(cdr), stamp)
             self._bag.write_cdr(topic, kind, cdr, stamp)
             if topic == self._status_topic:
                 self.answered.add(stamp)

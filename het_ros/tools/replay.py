@@ -35,7 +35,7 @@ from het_ros.tools.tracker_arguments import tracker_arguments
 from het_ros.tracking.box import Box
 
 EXAMPLE = """example:
-  python -m het_ros.tools.replay bags/follow_walk --out out/replay -p seed:=3
+  ros2 run het_ros replay bags/follow_walk --out out/replay -p seed:=3
 """
 
 

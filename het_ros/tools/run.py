@@ -43,10 +43,10 @@ SHIPPED_BAG = Path("bags/follow_walk")
 START_UP = 30.0  # s that a tracker may take to start on a small, busy computer
 
 EXAMPLE = """examples:
-  python -m het_ros.tools.run
-  python -m het_ros.tools.run --sequence sequences/Crossing
-  python -m het_ros.tools.run --video vtest.avi --init 258,219,33,89
-  python -m het_ros.tools.run --bag bags/follow_walk -p seed:=3
+  ros2 run het_ros run
+  ros2 run het_ros run --sequence sequences/Crossing
+  ros2 run het_ros run --video vtest.avi --init 258,219,33,89
+  ros2 run het_ros run --bag bags/follow_walk -p seed:=3
 """
 
 

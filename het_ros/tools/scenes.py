@@ -40,9 +40,9 @@ CAMERAS = (
 )
 
 EXAMPLE = """example:
-  python -m het_ros.tools.scenes --seeds 5
-  python -m het_ros.tools.scenes --stories lookalike_at_column,lookalike_crosses --seeds 20
-  python -m het_ros.tools.scenes --seeds 3 --gray
+  ros2 run het_ros scenes --seeds 5
+  ros2 run het_ros scenes --stories lookalike_at_column,lookalike_crosses --seeds 20
+  ros2 run het_ros scenes --seeds 3 --gray
 """
 
 

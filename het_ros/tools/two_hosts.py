@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Camera and tracker on two hosts, made of two network namespaces: rate and latency of answers.
 
-``sudo -E python -m het_ros.tools.two_hosts`` runs the installed tracker in one namespace and a
+``sudo -E ros2 run het_ros two_hosts`` runs the installed tracker in one namespace and a
 camera in the other, joined by a veth pair, once for each setting, and prints a Markdown table.
 """
 
@@ -209,7 +209,7 @@ def main(arguments: list[str] | None = None) -> int:
         prog="two_hosts",
         description="Rate and latency between a camera and a tracker on two (made) hosts. "
         "Needs root and iproute2, for the network namespaces.",
-        epilog="example: sudo -E python -m het_ros.tools.two_hosts --frames 300",
+        epilog="example: sudo -E ros2 run het_ros two_hosts --frames 300",
     )
     parser.add_argument("--size", default="640x480,1280x720", help="(640x480,1280x720)")
     parser.add_argument("--frames", type=int, default=150, help="of each setting (150)")

@@ -7,7 +7,6 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-
 from pathlib import Path
 
 import numpy as np
@@ -23,7 +22,6 @@ from het_ros.tracking.config import TrackerConfig
 from het_ros.tracking.cost import check_cost
 from het_ros.tracking.estimate import Estimate, Patch, State, lasting_deviation
 from het_ros.tracking.features.extractor import FeatureExtractor, target_cells
-from het_ros.tracking.middle.size import Size
 from het_ros.tracking.middle.alignment import FirstFrameAlignment
 from het_ros.tracking.middle.fusion import (
     Agreement,
@@ -32,6 +30,7 @@ from het_ros.tracking.middle.fusion import (
     fused_place,
     network_is_right,
 )
+from het_ros.tracking.middle.size import Size
 from het_ros.tracking.middle.voting import Peak, best_place, distractor, peak_near
 from het_ros.tracking.top.background import Background
 from het_ros.tracking.top.confidence import Confidence, Decision
@@ -138,7 +137,10 @@ class Target:
         self._colour_power = 0.7 if gray else 1.0
         self._config = config
         self._size = Size(
-            np.array([box.w, box.h]), cells, config.scale_rate, config.first_frame,
+            np.array([box.w, box.h]),
+            cells,
+            config.scale_rate,
+            config.first_frame,
             config.growth_limit,
         )
         side = math.sqrt(box.area)
@@ -159,7 +161,7 @@ class Target:
         self._last_seen = np.array(box.centre)
         self._score = 1.0
         self._alignment: FirstFrameAlignment | None = None
-        self.probe=()
+        self.probe = ()
         look = self._look(image, np.array(box.centre))
         self._learn(look, box, 1.0, 1.0)
         middle = look.frame.window.to_window(np.array(box.centre))
@@ -227,9 +229,7 @@ class Target:
         frame = self._extractor.look(image, centre, self._size.size)
         cells = self._extractor.cells
         places = self._layout.places(frame.features.shape[1:], cells)
-        return Look(
-            frame, image, self._motion.centre, self._size.size, cells, places, self._score
-        )
+        return Look(frame, image, self._motion.centre, self._size.size, cells, places, self._score)
 
     def _find(self, image: Image, at: Floats) -> _Found:
         """All base ensembles vote; the best place is the target's if anything is."""
@@ -259,7 +259,9 @@ class Target:
     def _best_of(self, look: Look, votes: _Votes) -> _Found:
         peak, growth = best_place(votes.response), 0.0
         if self._alignment:
-            correction = self._alignment.correction(look.frame.channels, look.middle_of(peak.corner))
+            correction = self._alignment.correction(
+                look.frame.channels, look.middle_of(peak.corner)
+            )
             peak = replace(peak, corner=peak.corner + correction.shift)
             growth = correction.growth
         found = self._at(look, votes, peak, look.centre_of(peak.corner))
@@ -291,10 +293,10 @@ class Target:
         apart = float(np.hypot(*(theirs - place))) / side
         if apart < config.agree:
             centre = fused_place(place, theirs)
-            found = self._at(look, votes, peak_near(votes.template, look.corner_of(centre)), centre)
-            return replace(
-                found, proposal=proposal, agreement=Agreement(proposal.score, apart)
+            found = self._at(
+                look, votes, peak_near(votes.template, look.corner_of(centre)), centre
             )
+            return replace(found, proposal=proposal, agreement=Agreement(proposal.score, apart))
         here = proposal.score_at(place, config.near * side)
         there = peak_near(votes.response, look.corner_of(theirs))
         gained = votes.response[there.row, there.column] - votes.response.max()
@@ -302,7 +304,17 @@ class Target:
             min(float(np.hypot(*(centre - look.expected))) / side, 1.5)
             for centre in (theirs, place)
         ]
-        self.probe = (apart, proposal.score, here, float(votes.response.max()), float(votes.response[there.row, there.column]), self._confidence.usual, *theirs.tolist(), *place.tolist(), *look.expected.tolist())
+        self.probe = (
+            apart,
+            proposal.score,
+            here,
+            float(votes.response.max()),
+            float(votes.response[there.row, there.column]),
+            self._confidence.usual,
+            *theirs.tolist(),
+            *place.tolist(),
+            *look.expected.tolist(),
+        )
         if network_is_right(
             proposal.score - here, float(gained) / self._confidence.usual, moved[0] - moved[1]
         ):
@@ -350,9 +362,7 @@ class Target:
         self._redetection.forget()
         self._last_seen = centre
 
-    def _update_model(
-        self, found: _Found, decision: Decision, image: Image, dt: float
-    ) -> None:
+    def _update_model(self, found: _Found, decision: Decision, image: Image, dt: float) -> None:
         """Size, base ensembles and background follow the target, as far as it is believed."""
         ratio, centre = 1.0, np.array(found.box.centre)
         if decision.weight:

@@ -3,6 +3,7 @@
 """The installed executable in a process of its own, over DDS, as ``ros2 run`` starts it."""
 
 import signal
+import time
 
 import pytest
 
@@ -13,9 +14,14 @@ from het_ros.ros.status import status_values
 from .streams import FRAME_TIME, Camera, box_message, header_at, image_message
 
 
+def qos(topic: str, override: str) -> tuple[str, ...]:
+    return "--ros-args", "-p", f"qos_overrides./{topic}.subscription.{override}"
+
+
 def test_follows_what_another_process_sends(processes, local_graph, made_footage):
     frames, box = made_footage
-    tracker = processes("tracker", "--ros-args", "-r", "image:=/camera/image_raw")
+    remap, patient = ("-r", "image:=/camera/image_raw"), ("-p", "image_timeout:=0.0")
+    tracker = processes("tracker", "--ros-args", *remap, *patient)
     camera = local_graph.add(
         Camera(
             context=local_graph.context, cli_args=["--ros-args", "-r", "image:=/camera/image_raw"]
@@ -36,6 +42,19 @@ def test_follows_what_another_process_sends(processes, local_graph, made_footage
     assert tracker.poll() is None
 
 
+@pytest.mark.parametrize("pause", [0.0, 0.01, 0.05, 0.2])
+def test_a_second_ctrl_c_is_no_other_than_the_first(processes, local_graph, pause):
+    """Under launch a terminal's Ctrl-C reaches a node twice: from the terminal and from launch."""
+    tracker = processes("tracker")
+    camera = local_graph.add(Camera(context=local_graph.context))
+    local_graph.spin_until(camera.connected, "discovery")
+    for _ in range(3):
+        tracker.send_signal(signal.SIGINT)
+        time.sleep(pause)
+    assert tracker.wait() == 0
+    assert "Traceback" not in tracker.log.read_text()
+
+
 @pytest.mark.parametrize("stop", [signal.SIGINT, signal.SIGTERM])
 def test_a_signal_ends_it_cleanly(processes, local_graph, stop):
     tracker = processes("tracker")
@@ -53,14 +72,21 @@ def test_a_signal_ends_it_cleanly(processes, local_graph, stop):
         (("--ros-args", "-p", "seed:=much"), "seed"),
         (("--ros-args", "-p", "image_transport:=smoke"), "raw, compressed"),
         (("--fast",), "--fast"),
+        (qos("image", "reliability:=foo"), "auto, reliable, best_effort, not 'foo'"),
+        (qos("image", "depth:=-1"), "qos_overrides./image.subscription"),
+        (qos("camera_info", "reliability:=foo"), "best_effort, reliable"),
+        (("--ros-args", "-p", "garbage"), "garbage"),
+        (("--ros-args", "--params-file", "missing.yaml"), "missing.yaml"),
+        (("--targets", "a,a"), "names a twice"),
+        (("--targets", "a,b", "--ros-args", "-r", "__node:=x"), "__node:=x"),
     ],
 )
 def test_wrong_arguments_end_it_with_a_reason(processes, arguments, says):
     tracker = processes("tracker", *arguments)
     assert tracker.wait() == 2
-    log = tracker.log.read_text()
-    assert says in log
-    assert "Traceback" not in log
+    lines = tracker.log.read_text().splitlines()
+    assert says in lines[-1]
+    assert lines[-1].startswith("tracker: ") and (len(lines) == 1 or "usage" in lines[0])
 
 
 def test_help_has_an_example(processes):

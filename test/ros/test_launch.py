@@ -69,10 +69,14 @@ def test_both_files_say_the_same(without_launch):
     in_xml = {a.get("name"): (a.get("default"), a.get("description")) for a in XML.iter("arg")}
     assert in_python.pop("params_file")[0].args[0][1:] == ["config", "tracker.yaml"]
     assert in_xml.pop("params_file")[0] == "$(find-pkg-share het_ros)/config/tracker.yaml"
+    assert in_python.pop("targets")[0].args[0] == inner(in_xml.pop("targets")[0]) == "name"
     assert in_python == in_xml
 
     element = XML.find("node")
     assert (node.package, node.executable) == (element.get("pkg"), element.get("exec"))
+    first, second = node.arguments
+    assert element.get("args") == f"{first} $(var {second.args[0]})" == "--targets $(var targets)"
+    assert element.get("name") is None and not hasattr(node, "name")  # it renames all targets
     remaps = {source: target.args[0] for source, target in node.remappings}
     assert remaps == {r.get("from"): inner(r.get("to")) for r in element.iter("remap")}
     set_here = {
@@ -101,12 +105,13 @@ def test_package_xml_lists_what_they_need():
     assert {"launch", "launch_ros", "launch_xml"} <= needed
 
 
-def test_the_node_starts_with_what_they_pass(processes, local_graph):
+@pytest.mark.parametrize("targets", ["tracker", "left,right"])
+def test_the_node_starts_with_what_they_pass(processes, local_graph, targets):
     """The command line that launch makes of the XML, with the defaults and a namespace."""
-    values = {a.get("name"): a.get("default") for a in XML.iter("arg")}
+    values = {a.get("name"): a.get("default") for a in XML.iter("arg")} | {"targets": targets}
     values |= {"namespace": "robot1", "params_file": str(ROOT / "config" / "tracker.yaml")}
     node = XML.find("node")
-    command = ["--ros-args", "-r", f"__node:={values['name']}"]
+    command = ["--targets", values[inner(node.get("args").split(" ", 1)[1])], "--ros-args"]
     command += ["-r", f"__ns:=/{values['namespace']}", "--params-file", values["params_file"]]
     for remap in node.iter("remap"):
         command += ["-r", f"{remap.get('from')}:={values[inner(remap.get('to'))]}"]
@@ -116,7 +121,13 @@ def test_the_node_starts_with_what_they_pass(processes, local_graph):
     processes("tracker", *command)
     remaps = ["--ros-args", "-r", "__ns:=/robot1", "-r", "image:=/camera/image_raw"]
     camera = local_graph.add(Camera(context=local_graph.context, cli_args=remaps))
-    local_graph.spin_until(camera.connected, "the node on the camera's topic")
     local_graph.spin_until(
-        lambda: ("tracker", "/robot1") in camera.get_node_names_and_namespaces(), "its name"
+        lambda: camera.images.get_subscription_count() > 0, "the node on the camera's topic"
+    )
+    local_graph.spin_until(
+        lambda: (
+            {(name, "/robot1") for name in targets.split(",")}
+            <= set(camera.get_node_names_and_namespaces())
+        ),
+        "its name",
     )

@@ -2,18 +2,13 @@
 # SPDX-License-Identifier: Apache-2.0
 """Outputs that need more than an image: bearing, place, detections, debug image, diagnostics."""
 
-from dataclasses import dataclass, field
-from types import SimpleNamespace
-
 import numpy as np
 import pytest
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
-from geometry_msgs.msg import PoseWithCovariance
 from rclpy.node import Node
 from rclpy.parameter import Parameter
 from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 from sensor_msgs.msg import CameraInfo, Image
-from std_msgs.msg import Header
 
 from het_ros import Box, Estimate, State
 from het_ros.ros import answers, tracker_node
@@ -26,6 +21,7 @@ from het_ros.ros.tracker_node import TrackerNode
 from het_ros.tracking.estimate import Patch
 
 from .streams import FRAME_TIME, ByHand, Camera, header_at, image_message
+from .vision import VISION
 
 MATRIX = [200.0, 0.0, 80.0, 0.0, 200.0, 60.0, 0.0, 0.0, 1.0]
 
@@ -107,60 +103,6 @@ def test_no_bearing_without_calibration(graph, made_footage):
     assert "bearing" not in hand.box(box)
     hand.node.space.on_camera_info(CameraInfo(width=640, height=480, k=MATRIX))
     assert "bearing" not in hand.image(frames[1], 1 + FRAME_TIME)
-
-
-@dataclass(slots=True)
-class Point2D:
-    x: float = 0.0
-    y: float = 0.0
-
-
-@dataclass(slots=True)
-class Pose2D:
-    position: Point2D = field(default_factory=Point2D)
-    theta: float = 0.0
-
-
-@dataclass(slots=True)
-class BoundingBox2D:
-    center: Pose2D = field(default_factory=Pose2D)
-    size_x: float = 0.0
-    size_y: float = 0.0
-
-
-@dataclass(slots=True)
-class ObjectHypothesis:
-    class_id: str = ""
-    score: float = 0.0
-
-
-@dataclass(slots=True)
-class ObjectHypothesisWithPose:
-    hypothesis: ObjectHypothesis = field(default_factory=ObjectHypothesis)
-    pose: PoseWithCovariance = field(default_factory=PoseWithCovariance)
-
-
-@dataclass(slots=True)
-class Detection2D:
-    header: Header = field(default_factory=Header)
-    results: list = field(default_factory=list)
-    bbox: BoundingBox2D = field(default_factory=BoundingBox2D)
-    id: str = ""
-
-
-@dataclass(slots=True)
-class Detection2DArray:
-    header: Header = field(default_factory=Header)
-    detections: list = field(default_factory=list)
-
-
-# vision_msgs 4 (Jazzy) as far as it is used: a field that it does not have cannot be set.
-VISION = SimpleNamespace(
-    BoundingBox2D=BoundingBox2D,
-    ObjectHypothesisWithPose=ObjectHypothesisWithPose,
-    Detection2D=Detection2D,
-    Detection2DArray=Detection2DArray,
-)
 
 
 @pytest.mark.parametrize("vision", [VISION, tracker_node.vision_msgs], ids=["stand-in", "real"])

@@ -12,7 +12,7 @@ from het_ros.ros.tracker_node import TrackerNode
 POLICY = Path(__file__).parents[2] / "config" / "sros2_policy.xml"
 # Not in every node: the other transport, simulated time, vision_msgs; and the log's topic where a
 # node of the same name was in this process before (rcl keeps one publisher per name).
-SOMETIMES = {"/image/compressed", "/clock", "/tracker/detections", "/rosout"}
+SOMETIMES = {"/image/compressed", "/clock", "/tracker/detections", "/detections_in", "/rosout"}
 
 
 def allowed(kind: str) -> set[str]:

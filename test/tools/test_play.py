@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import itertools
 import threading
 import time
 from collections import defaultdict
@@ -13,7 +14,7 @@ import pytest
 from het_ros import Box, State
 from het_ros.ros.status import Status, status_message
 from het_ros.tools.bag_messages import INIT_BOX_TOPIC, box_of, stamp_of
-from het_ros.tools.bag_reader import BagReader
+from het_ros.tools.bag_reader import BagReader, header_stamp
 from het_ros.tools.bag_writer import TYPESTORE, BagWriter
 from het_ros.tools.interrupt import StopRequest
 from het_ros.tools.play import main, play
@@ -141,6 +142,35 @@ def test_frames_come_at_the_rate_that_was_asked_for(
     assert (np.diff(now) > 0.8 * np.diff(due) - 1e-9).all(), "no bursts"
     assert late.max() <= sum(held_up.values()) + 1e-9
     assert not held_up or late[-1] < late.max() > 0.05, "it catches up"
+
+
+def test_the_bag_s_own_box_may_be_left_out(crossing_bag, listener, tmp_path):
+    with BagReader(crossing_bag) as bag:
+        stamps = play(bag, tmp_path / "bag", StopRequest(), rate=5, without_box=True)
+    assert len(stamps) == 40
+    assert INIT_BOX_TOPIC not in listener.heard
+
+
+def test_stamps_of_the_play_are_now_and_the_results_have_the_bag_s(
+    crossing_bag, listener, tmp_path, capsys
+):
+    begun = time.time_ns()
+    options = ["--out", str(tmp_path / "out"), "--rate", "2", "--now"]
+    assert main([str(crossing_bag), *options]) == 0
+    assert "40 sent, 40 answered (100.0%)" in capsys.readouterr().out
+    with BagReader(crossing_bag) as bag:
+        recorded = [header_stamp(r.cdr) for r in bag.recorded(bag.image_topic)]
+        heard = [header_stamp(cdr) for cdr in listener.heard[bag.image_topic]]
+        rest = [r.cdr[12:] for r in bag.recorded(bag.image_topic)]
+        assert [cdr[12:] for cdr in listener.heard[bag.image_topic]] == rest
+    assert begun < heard[0] < time.time_ns()
+    steps = [b - a for a, b in itertools.pairwise(heard)]
+    assert steps == pytest.approx([(b - a) / 2 for a, b in itertools.pairwise(recorded)], abs=2)
+    (box,) = listener.heard[INIT_BOX_TOPIC]
+    assert header_stamp(box) == heard[0]  # it still names its image
+    rows = read_csv(tmp_path / "out" / "track.csv")
+    assert [row.stamp for row in rows] == recorded
+    assert [row.state for row in rows] == [State.IDLE] * 40
 
 
 def test_a_box_of_the_command_line_is_sent_with_the_first_stamp(crossing_bag, listener, tmp_path):

@@ -170,4 +170,4 @@ def test_a_domain_in_use_is_left_alone(monkeypatch):
 def test_every_command_shows_an_example(tool):
     command = [sys.executable, "-m", f"het_ros.tools.{tool}", "--help"]
     shown = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=True).stdout
-    assert f"python -m het_ros.tools.{tool} " in shown.split("example", 1)[1]
+    assert f"ros2 run het_ros {tool}" in shown.split("example", 1)[1]

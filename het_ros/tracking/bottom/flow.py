@@ -163,7 +163,7 @@ class FlowEnsemble:
     def _follow(
         self, one: Pixels, other: Pixels, points: _Points, guess: _Points
     ) -> tuple[_Points, NDArray[np.bool_]]:
-        """Places (P, 2) of ``points`` of one image in another, and (P,) whether they were found."""
+        """Places (P, 2) of ``points`` in another image, and (P,) whether they were found."""
         config = self._config
         kinds = cv2.TERM_CRITERIA_COUNT | cv2.TERM_CRITERIA_EPS
         moved, status, _ = cv2.calcOpticalFlowPyrLK(

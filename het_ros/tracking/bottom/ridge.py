@@ -17,6 +17,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from het_ros.tracking.features.buffers import Buffers
 from het_ros.tracking.features.compressive import FeatureMaps
 
 Floats = NDArray[np.float64]
@@ -62,6 +63,7 @@ class RidgeRegression:
         self._config = RidgeConfig()
         self._rates, self._ridge, self._first_frame = rates, ridge, first_frame
         self._sigma = self._config.label_sigma * side
+        self._buffers = Buffers()
         self._learnt = 0  # frames after the first, in units of whole ones
         self._first: _Statistics | None = None
         self._running: list[_Statistics] = []
@@ -124,7 +126,7 @@ class RidgeRegression:
         """
         m = len(features)
         flat = features.reshape(m, -1)
-        rows = np.empty((m + 1 + len(corners), flat.shape[1]), flat.dtype)
+        rows = self._buffers.empty((m + 1 + len(corners), flat.shape[1]), flat.dtype)
         labels = rows[m + 1 :]
         labels[:] = self.labels(corners, features.shape[1:])
         weights = 1 + self._config.emphasis * labels.max(axis=0)

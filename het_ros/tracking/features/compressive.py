@@ -175,21 +175,24 @@ class RectangleSums:
         for plane, integral in zip(self._stack, integrals, strict=True):
             plane[...] = integral
         maps = self._buffers.empty((len(self._scale), *self._wanted.shape), self._scale.dtype)
-        for feature, operations in self._program:
+        planes, sums = list(maps), self._wanted
+        same = sums.dtype == maps.dtype
+        for feature, scale, operations in self._program:
             for operation, one, other, out in operations:
                 operation(one, other, out)
-            values = self._wanted
-            if values.dtype != maps.dtype:  # copied first: faster than multiplying into another
-                maps[feature] = values
-                values = maps[feature]
-            np.multiply(values, self._scale[feature : feature + 1, None], maps[feature])
+            plane = planes[feature]
+            if same:
+                np.multiply(sums, scale, plane)
+            else:  # copied first: faster than multiplying into another dtype
+                plane[...] = sums
+                np.multiply(plane, scale, plane)
         return maps
 
     def _compile(
         self, rows: Sequence[Sequence[Rectangle]], centres: FeatureMaps
-    ) -> list[tuple[int, list[_Operation]]]:
+    ) -> list[tuple[int, FeatureMaps, list[_Operation]]]:
         """What makes each feature's centred sums in ``_total``, channel after channel."""
-        program: list[tuple[int, list[_Operation]]] = []
+        program: list[tuple[int, FeatureMaps, list[_Operation]]] = []
         channel, bands = -1, {}
         for feature in sorted(range(len(rows)), key=lambda feature: rows[feature][0].channel):
             operations: list[_Operation] = []
@@ -209,7 +212,7 @@ class RectangleSums:
                 operations.append((np.subtract, plus, minus, self._total))
             # Centred first, where whole numbers are still exact.
             operations.append((np.subtract, self._total, centres[feature], self._total))
-            program.append((feature, operations))
+            program.append((feature, self._scale[feature : feature + 1, None], operations))
         return program
 
     def _bands(

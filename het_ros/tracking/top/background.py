@@ -11,7 +11,7 @@ target was elsewhere), and with the target's place. What fits the first better i
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Sequence
+from collections.abc import Iterable
 from dataclasses import dataclass
 from itertools import islice
 
@@ -142,22 +142,22 @@ class Background:
         size = np.array([box.w, box.h])
         place = np.array([box.x, box.y]) - self._at
         latest_first = tuple(reversed(self._keyframes))
-        before = [
+        before = (
             (one, place + one.at)
             for one in latest_first
             if self._time - one.time > config.not_now and not self._was_target(one, box)
-        ]
+        )
         stood = self._best_of(before, patch, config.camera_error * size)
         if stood <= config.alike:
             return False
-        target = [
+        target = (
             (one, np.array(one.box.centre) - size / 2)
             for one in latest_first
             if self._time - one.time > config.not_lately
-        ]
+        )
         return stood > self._best_of(target, patch, config.target_error * size) + config.clearly
 
-    def _best_of(self, places: Sequence[Place], patch: Image, error: Floats) -> float:
+    def _best_of(self, places: Iterable[Place], patch: Image, error: Floats) -> float:
         """Highest correlation of a patch with the first places that keyframes show, or -1."""
         fits = (
             best_fit(one.pixels, corner * self._scale, patch, error * self._scale)

@@ -47,9 +47,7 @@ class Features:
     def clipped(self) -> tuple[float, ...]:
         """The features within the ranges in which more of them says more."""
         limits = (math.inf, 1.3, 1.3, 1.5, 1.0, math.inf)
-        return tuple(
-            min(max(x, 0.0), most) for x, most in zip(astuple(self), limits, strict=True)
-        )
+        return tuple(min(max(x, 0.0), most) for x, most in zip(astuple(self), limits, strict=True))
 
 
 def probability(features: Features, agreement: Agreement | None = None) -> float:
@@ -212,4 +210,3 @@ class Confidence:
         rate = self._config.average_rate
         self._score += rate * (score - self._score)
         self._colour += rate * (colour - self._colour)
-

@@ -129,9 +129,7 @@ def test_best_fit_is_the_best_of_all_shifts():
     assert best_fit(pixels, np.array([60.0, 5.0]), patch, error) is None
 
 
-@pytest.mark.parametrize(("story", "seed"), [("hidden_2s", 5), ("lookalike_at_column", 5)])
-def test_a_column_that_hides_the_target_is_not_followed(story, seed):
-    config = SceneConfig(story=story, seed=seed, rate=15.0, width=320, height=240)
-
+def test_a_column_that_hides_the_target_is_not_followed():
+    config = SceneConfig(story="hidden_2s", seed=5, rate=15.0, width=320, height=240)
     moments = followed(config, TrackerConfig())
     assert honesty(moments, config.rate).confident_wrong < 5
