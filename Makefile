@@ -11,7 +11,7 @@ PEERS := .venv-peers
 OLDEST := .venv-oldest
 SITE := .venv-site
 SITE_PACKAGES := 'mkdocs-material>=9.5,<10' 'mkdocstrings[python]>=0.26'
-VENV_EXTRAS := ros,opencv,bags,test,build
+VENV_EXTRAS := ros,opencv,bags,operator,test,build,fit
 PEERS_EXTRAS := ros,bags,evaluate
 BUILT := install/.built
 SOURCES := $(shell find het_ros config launch resource -type f -not -name '*.pyc' 2>/dev/null)
@@ -24,18 +24,20 @@ WORKSPACE := $(ROS); source install/setup.bash
 PEERS_SPACE := $(CLEAN); source $(PEERS)/bin/activate; export AMENT_PREFIX_PATH="$$VIRTUAL_ENV"; \
 	source install/setup.bash
 
-.PHONY: help setup build run test test-oldest fuzz faults soak evaluate compare scenes bench docs \
-	site picture count coverage format clean
+.PHONY: help setup build run operator test test-oldest fuzz faults soak evaluate compare scenes fit \
+	bench docs site picture dist count coverage format clean
 
 help: ## What there is to make
 	@grep -E '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:[^#]*## /\t/' | expand -t 14
 	@echo
 	@echo 'make run [VIDEO=file INIT=x,y,w,h | SEQUENCE=folder] [OUT=out/run]'
+	@echo 'make operator [VIDEO=file | SEQUENCE=folder] [OPERATOR="-o host:=0.0.0.0"]; make run WEB=1'
 	@echo 'make evaluate DATA=folder [OUT=out/evaluate] [TRACKERS=het,csrt] [SEEDS=3]'
 	@echo '     [PROTOCOL=ope|tre|sre|passes|realtime|restart] [SEQUENCES=a,b] [SCHEDULER=tcp://host:8786]'
 	@echo '     [MODELS=folder] [BOXES="NAME=folder ..."]'
 	@echo 'make compare A=folder B=folder[:tracker] [OUT=folder] [DATA=folder]'
 	@echo 'make scenes [OUT=out/scenes] [SCENES="--seeds 20 --stories lookalike_crosses"]'
+	@echo 'make fit DATA=folder [MODELS=folder] [SEQUENCES=a,b] [SEEDS=3] [FIT="--off 1 --again"]'
 	@echo 'make bench [OUT=out/bench] [DATA=folder]'
 	@echo 'make fuzz [MINUTES=10] [OUT=out/fuzz]'
 	@echo 'make soak [MINUTES=60] [OUT=out/soak] [SOAK="--size 1280x720 -p seed:=3"]'
@@ -84,12 +86,16 @@ $(BUILT): $(VENV)/.ready package.xml setup.py setup.cfg $(SOURCES)
 VIDEO ?=
 INIT ?=
 SEQUENCE ?=
-RUN_OPTIONS = $(if $(VIDEO),--video '$(VIDEO)') $(if $(INIT),--init '$(INIT)') \
-	$(if $(SEQUENCE),--sequence '$(SEQUENCE)')
+FOOTAGE = $(if $(VIDEO),--video '$(VIDEO)') $(if $(SEQUENCE),--sequence '$(SEQUENCE)')
 
 run: OUT ?= out/run
 run: $(BUILT) ## Follow the target of the recorded bag, or of your own footage; look into out/run
-	@$(WORKSPACE); python -m het_ros.tools.run --out '$(OUT)' $(RUN_OPTIONS)
+	@$(WORKSPACE); python -m $(if $(WEB),het_ros.operator.demo $(OPERATOR),het_ros.tools.run \
+		$(if $(INIT),--init '$(INIT)')) $(FOOTAGE) --out '$(OUT)'
+
+operator: WEB = 1
+operator: OUT ?= out/operator
+operator: run ## The same in a browser, to and fro: pick the target on the page whose address it tells
 
 # Tests of many processes and of real time do not bear company; the others run side by side.
 # A choice by PYTEST may leave nothing to do (pytest's exit code 5) for one of the two.
@@ -148,6 +154,12 @@ compare: $(BUILT) ## Judge a change: paired differences of the results folders A
 scenes: OUT ?= out/scenes
 scenes: $(BUILT) ## Is it honest? Rendered stories with exact truth: hidden, gone, look-alikes
 	@$(WORKSPACE); python -m het_ros.tools.scenes --out '$(OUT)/scenes.json' $(SCENES)
+
+fit: OUT ?= out/fit
+fit: $(VENV)/.ready ## Fit the tracker's calibration to DATA=folder; writes het_ros/tracking/fitted.py
+	@test -n '$(DATA)' || { echo 'make fit DATA=folder [MODELS=folder]: name a folder of sequences (OTB or VOT layout)'; exit 2; }
+	@$(ROS); python -m het_ros.tools.fit --data '$(DATA)' --plot '$(OUT)/fit.png' $(if $(MODELS),--models '$(MODELS)') \
+		$(if $(SEQUENCES),--sequences '$(SEQUENCES)') $(if $(SEEDS),--seeds $(SEEDS)) $(FIT)
 
 bench: OUT ?= out/bench
 bench: $(BUILT) $(PEERS)/.ready ## Speed of the core and of the node, as ratios to the peers

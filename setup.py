@@ -55,6 +55,10 @@ EXTRAS = {
         "attributee<0.1.10",  # vot-toolkit 0.9 breaks with newer ones on Python 3.11
         *SCORING,
     ],
+    # The page on which a target is picked; segno draws its address as a QR code.
+    "operator": ["aiohttp>=3.8", "jsonschema>=4.10", "segno>=1.4"],
+    # Fitting the constants of `make fit`.
+    "fit": ["scikit-learn>=1.3", *SCORING],
     # Scoring on a Dask cluster.
     "cluster": ["distributed>=2023.1"],
     # colcon still needs `setup.py develop`, which setuptools 80 took away.
@@ -69,6 +73,7 @@ EXTRAS = {
         "catkin-pkg>=1.0",
         "rosdep>=0.22",
         "distributed>=2023.1",
+        "playwright>=1.40",  # drives the system's Chromium; brings none
         *SCORING,
     ],
 }
@@ -85,7 +90,9 @@ setup(
     name=NAME,
     version=PACKAGE.findtext("version"),
     packages=find_packages(include=[NAME, f"{NAME}.*"]),
-    package_data={NAME: ["py.typed", "evaluation/*.csv", "evaluation/templates/*"]},
+    package_data={
+        NAME: ["py.typed", "evaluation/*.csv", "evaluation/templates/*", "operator/static/*"]
+    },
     data_files=[
         ("share/ament_index/resource_index/packages", [f"resource/{NAME}"]),
         (f"share/{NAME}", ["package.xml"]),

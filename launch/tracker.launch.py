@@ -4,6 +4,7 @@
 
 from launch import LaunchDescription
 from launch.actions import DeclareLaunchArgument
+from launch.conditions import IfCondition
 from launch.substitutions import LaunchConfiguration, PathJoinSubstitution
 from launch_ros.actions import Node
 from launch_ros.substitutions import FindPackageShare
@@ -18,11 +19,14 @@ ARGUMENTS = (
     ("name", "tracker", "name of the node; its outputs are below it"),
     ("use_sim_time", "false", "take the time from /clock"),
     ("autostart", "true", "false leaves configuring and activating to a lifecycle manager"),
+    ("operator", "false", "true serves the page on which a target is picked in a browser"),
+    ("host", "localhost", "address of that page; 0.0.0.0 is every network, with a token"),
+    ("port", "8642", "its port"),
 )
 
 
 def generate_launch_description() -> LaunchDescription:
-    """The arguments and the node."""
+    """The arguments and the nodes."""
     default_file = PathJoinSubstitution([FindPackageShare("het_ros"), "config", "tracker.yaml"])
     arguments = [
         DeclareLaunchArgument(name, default_value=default, description=meaning)
@@ -59,4 +63,18 @@ def generate_launch_description() -> LaunchDescription:
             ("depth", LaunchConfiguration("depth")),
         ],
     )
-    return LaunchDescription([*arguments, tracker])
+    operator = Node(
+        package="het_ros",
+        executable="operator",
+        namespace=LaunchConfiguration("namespace"),
+        output="screen",
+        condition=IfCondition(LaunchConfiguration("operator")),
+        parameters=[
+            {
+                "host": LaunchConfiguration("host"),
+                "port": LaunchConfiguration("port"),
+                "use_sim_time": LaunchConfiguration("use_sim_time"),
+            }
+        ],
+    )
+    return LaunchDescription([*arguments, tracker, operator])

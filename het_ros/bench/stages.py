@@ -6,7 +6,7 @@ from __future__ import annotations
 
 import functools
 import time
-from collections import Counter
+from collections import defaultdict
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import Any
@@ -75,9 +75,9 @@ STAGES: tuple[str, ...] = tuple(dict.fromkeys(stage for stage, _, _ in _PLACES))
 
 
 @contextmanager
-def timed_stages() -> Iterator[Counter[str]]:
-    """Within the block every stage of every tracker adds its time, s, to the Counter given."""
-    spent: Counter[str] = Counter()
+def timed_stages() -> Iterator[dict[str, float]]:
+    """Within the block every stage of every tracker adds its time, s, to the table given."""
+    spent: dict[str, float] = defaultdict(float)
     before = [(place, name, getattr(place, name)) for _, place, name in _PLACES]
     try:
         for stage, place, name in _PLACES:
@@ -88,7 +88,9 @@ def timed_stages() -> Iterator[Counter[str]]:
             setattr(place, name, function)
 
 
-def _timed(function: Callable[..., Any], stage: str, spent: Counter[str]) -> Callable[..., Any]:
+def _timed(
+    function: Callable[..., Any], stage: str, spent: dict[str, float]
+) -> Callable[..., Any]:
     @functools.wraps(function)
     def timed(*args: Any, **kwargs: Any) -> Any:
         begun = time.perf_counter()

@@ -54,7 +54,8 @@ def main(arguments: list[str] | None = None) -> int:
     options = parser().parse_args(arguments)
     try:
         if options.compare:
-            return compare(*options.compare, options.out, options.data)
+            before, after = options.compare
+            return compare(before, after, options.out, options.data)
         if not options.data or not options.out:
             raise ValueError("--data and --out are needed, or --compare A B")
         return evaluate(options)

@@ -171,4 +171,4 @@ def _with_channels_of(image: Pixels, shape: tuple[int, ...]) -> Pixels:
     if image.ndim == len(shape):
         return image
     code = cv2.COLOR_GRAY2BGR if image.ndim == 2 else cv2.COLOR_BGR2GRAY
-    return cv2.cvtColor(image, code)
+    return np.asarray(cv2.cvtColor(image, code), np.uint8)

@@ -30,9 +30,11 @@ class Recorder:
         bag: open bag to write to.
         tracker: full name of the tracker's node.
         clock: of a play with stamps of its own; the recording has the bag's.
+        on_failure: is called when the bag takes no more, instead of an error in the callback.
 
     Attributes:
         answered: stamps (ns) of the frames for which a status came.
+        size: bytes of the messages that were recorded.
     """
 
     def __init__(
@@ -41,10 +43,14 @@ class Recorder:
         bag: BagWriter,
         tracker: str = DEFAULT_TRACKER,
         clock: PlayClock | None = None,
+        on_failure: Callable[[OSError], None] | None = None,
     ) -> None:
+        self._node = node
         self._bag = bag
         self._clock = clock
+        self._on_failure = on_failure
         self.answered: set[int] = set()
+        self.size = 0
         self._status_topic = f"{tracker}/status"
         self._subscriptions = [
             self._subscribe(node, f"{tracker}/{name}", kind) for name, kind in OUTPUT_TYPES.items()
@@ -58,6 +64,12 @@ class Recorder:
             for s in self._subscriptions
         )
 
+    def close(self) -> None:
+        """Take the subscriptions away; the bag is the caller's."""
+        for subscription in self._subscriptions:
+            self._node.destroy_subscription(subscription)
+        self._subscriptions.clear()
+
     def _subscribe(self, node: Node, topic: str, kind: str) -> Any:
         self._bag.add_topic(topic, kind)
         callback = self._writing(topic, kind)
@@ -69,7 +81,14 @@ class Recorder:
             if self._clock is not None:
                 stamp = self._clock.recorded(stamp)
                 cdr = restamped(bytes(cdr), stamp)
-            self._bag.write_cdr(topic, kind, cdr, stamp)
+            try:
+                self._bag.write_cdr(topic, kind, cdr, stamp)
+            except OSError as error:
+                if self._on_failure is None:
+                    raise
+                self._on_failure(error)
+                return
+            self.size += len(cdr)
             if topic == self._status_topic:
                 self.answered.add(stamp)
 

@@ -97,7 +97,8 @@ def _warnings(log: Path) -> list[str]:
     return [match.group(2) for match in found if match]
 
 
-def _shipped_bag() -> Path:
+def shipped_bag() -> Path:
+    """The recorded walk of the checkout."""
     for parent in Path(__file__).resolve().parents:
         if (parent / SHIPPED_BAG).is_dir():
             return parent / SHIPPED_BAG
@@ -145,7 +146,7 @@ def main(argv: Sequence[str] | None = None) -> int:
         folder.path.mkdir(parents=True, exist_ok=True)
         footage = options.video or options.sequence
         path = _bag_of_footage(footage, folder, options) if footage else options.bag
-        with BagReader(path or _shipped_bag(), options.image_topic) as bag:
+        with BagReader(path or shipped_bag(), options.image_topic) as bag:
             summary, whole = run(
                 bag,
                 folder,

@@ -18,13 +18,16 @@ from het_ros.tracking.bottom.flow import FlowEnsemble
 from het_ros.tracking.bottom.network import NetworkEnsemble, Proposal
 from het_ros.tracking.bottom.sub_patches import SubPatchEnsembles, draw_layout
 from het_ros.tracking.box import Box
+from het_ros.tracking.calibration import Calibration
 from het_ros.tracking.config import TrackerConfig
 from het_ros.tracking.cost import check_cost
 from het_ros.tracking.estimate import Estimate, Patch, State, lasting_deviation
 from het_ros.tracking.features.extractor import FeatureExtractor, target_cells
+from het_ros.tracking.fitted import FITTED
 from het_ros.tracking.middle.alignment import FirstFrameAlignment
 from het_ros.tracking.middle.fusion import (
     Agreement,
+    Disagreement,
     FusionConfig,
     followed_size,
     fused_place,
@@ -37,6 +40,7 @@ from het_ros.tracking.top.confidence import Confidence, Decision
 from het_ros.tracking.top.ego_motion import EgoMotion
 from het_ros.tracking.top.kalman import AdaptiveKalman
 from het_ros.tracking.top.redetection import Redetection
+from het_ros.tracking.top.velocity import VelocityFilter
 
 Floats = NDArray[np.float64]
 Image = NDArray[np.uint8]
@@ -94,6 +98,7 @@ class Target:
         config: parameters.
         image: (H, W, 3) or (H, W) uint8.
         box: the target in it.
+        calibration: the fitted constants.
         further: base ensembles beside those of the configuration; the vote of each multiplies.
 
     Raises:
@@ -105,6 +110,7 @@ class Target:
         config: TrackerConfig,
         image: Image,
         box: Box,
+        calibration: Calibration = FITTED,
         further: Sequence[EnsembleFactory] = (),
     ) -> None:
         rng = np.random.default_rng(config.seed)
@@ -151,17 +157,20 @@ class Target:
             config.nominal_dt,
             config.longest_dt,
         )
+        self._velocity = VelocityFilter(np.array(box.centre), side)
         self._network = NetworkEnsemble(Path(config.network)) if config.network else None
         if self._network:
             self._network.start(image, box)
         self._ego_motion = EgoMotion(image)
         self._background = Background(image.shape, side) if config.background else None
         self._redetection = Redetection()
-        self._confidence = Confidence(config.lost_after)
+        self._confidence = Confidence(config.lost_after, calibration)
+        self._fusion = FusionConfig.of(calibration)
         self._last_seen = np.array(box.centre)
         self._score = 1.0
         self._alignment: FirstFrameAlignment | None = None
-        self.probe = ()
+        self._judged = box
+        self._disagreement: Disagreement | None = None
         look = self._look(image, np.array(box.centre))
         self._learn(look, box, 1.0, 1.0)
         middle = look.frame.window.to_window(np.array(box.centre))
@@ -171,6 +180,16 @@ class Target:
     def confidence(self) -> Confidence:
         """What judges the target; its ``features`` are those of the last frame."""
         return self._confidence
+
+    @property
+    def judged(self) -> Box:
+        """The box whose place was judged in the last frame, whether or not it was followed."""
+        return self._judged
+
+    @property
+    def disagreement(self) -> Disagreement | None:
+        """Of network and ensembles in the last frame; None where their places are one."""
+        return self._disagreement
 
     def follow(
         self,
@@ -201,6 +220,7 @@ class Target:
     def _predict(self, image: Image, dt: float, step: float) -> None:
         """Move the motion model on, and what is known of the scene with the camera."""
         self._motion.predict(dt)
+        self._velocity.predict(step, math.sqrt(float(self._size.size.prod())))
         shift = self._ego_motion.follow(image, step)
         if self._background:
             self._background.move(shift)
@@ -233,12 +253,13 @@ class Target:
 
     def _find(self, image: Image, at: Floats) -> _Found:
         """All base ensembles vote; the best place is the target's if anything is."""
+        self._disagreement = None
         look = self._look(image, at)
         if self._network is None:
             return self._best_of(look, self._vote(look))
         proposal = self._network.propose(look, at)
         theirs = np.array(proposal.box.centre)
-        if proposal.score > FusionConfig().sure and not self._shows(look, theirs):
+        if proposal.score > self._fusion.sure and not self._shows(look, theirs):
             look = self._look(image, theirs)
         return self._fused(look, self._vote(look), proposal)
 
@@ -287,7 +308,7 @@ class Target:
 
     def _fused(self, look: Look, votes: _Votes, proposal: Proposal) -> _Found:
         """The place that network and ensembles agree on, or the likelier of their two places."""
-        config, side = FusionConfig(), math.sqrt(float(look.size.prod()))
+        config, side = self._fusion, math.sqrt(float(look.size.prod()))
         ours = self._best_of(look, votes)
         place, theirs = np.array(ours.box.centre), np.array(proposal.box.centre)
         apart = float(np.hypot(*(theirs - place))) / side
@@ -300,24 +321,17 @@ class Target:
         here = proposal.score_at(place, config.near * side)
         there = peak_near(votes.response, look.corner_of(theirs))
         gained = votes.response[there.row, there.column] - votes.response.max()
-        moved = [
-            min(float(np.hypot(*(centre - look.expected))) / side, 1.5)
-            for centre in (theirs, place)
-        ]
-        self.probe = (
-            apart,
+        self._disagreement = Disagreement(
             proposal.score,
             here,
-            float(votes.response.max()),
-            float(votes.response[there.row, there.column]),
+            float(gained),
             self._confidence.usual,
-            *theirs.tolist(),
-            *place.tolist(),
-            *look.expected.tolist(),
+            _point(theirs),
+            _point(place),
+            _point(look.expected),
+            side,
         )
-        if network_is_right(
-            proposal.score - here, float(gained) / self._confidence.usual, moved[0] - moved[1]
-        ):
+        if network_is_right(self._disagreement, config):
             found = self._at(look, votes, there, theirs)
             agreement = Agreement(proposal.score, min(apart, 1.0))
             return replace(found, proposal=proposal, agreement=agreement)
@@ -331,6 +345,7 @@ class Target:
         witness: Callable[[Box], bool] | None,
     ) -> Decision:
         """Whether it is the target, or something else that stands there."""
+        self._judged = found.box
         occluded = witness is not None and not witness(found.box)
         if not occluded and self._background:
             occluded = self._background.shows(image, found.box)
@@ -349,6 +364,7 @@ class Target:
     def _coast(self) -> None:
         """The target is not there: go on as predicted."""
         self._motion.coast()
+        self._velocity.coast()
         for ensemble in self._ensembles:
             ensemble.forget()
 
@@ -357,7 +373,9 @@ class Target:
         centre = np.array(found.box.centre)
         if decision.returned:
             self._motion.restart(centre)
+            self._velocity.restart(centre, math.sqrt(found.box.area))
         else:
+            self._velocity.correct(centre)
             self._motion.correct(centre, float(np.clip(found.weights, *_WEIGHTS).mean()))
         self._redetection.forget()
         self._last_seen = centre
@@ -401,8 +419,18 @@ class Target:
         return Box.from_centre(x, y, width, height)
 
     def estimate(self, score: float, state: State, patches: tuple[Patch, ...] = ()) -> Estimate:
-        """What the motion model holds, as an estimate."""
-        box, covariance = self._box(self._motion.centre), self._motion.covariance
+        """What the two filters of the motion hold, as an estimate."""
+        box, motion = self._box(self._motion.centre), self._velocity.motion
         lasting = lasting_deviation(score) * np.array([box.w, box.h])
-        covariance[:2, :2] += np.diag(lasting**2)
-        return Estimate(box, self._motion.velocity, covariance, score, state, patches)
+        covariance = np.zeros((4, 4))
+        covariance[:2, :2] = self._motion.covariance[:2, :2] + np.diag(lasting**2)
+        covariance[2:, 2:] = motion.covariance
+        own_x, own_y = (np.array(motion.total) - self._ego_motion.velocity).tolist()
+        return Estimate(
+            box, motion.total, covariance, score, state, patches, (own_x, own_y), motion
+        )
+
+
+def _point(place: Floats) -> tuple[float, float]:
+    x, y = place.tolist()
+    return x, y

@@ -73,7 +73,7 @@ class HierarchicalEnsembleTracker:
                 would take more than ``most_memory``. The target followed before stays.
         """
         check_image(image, box)
-        self._target = Target(self.config, image, box, self._further)
+        self._target = Target(self.config, image, box, further=self._further)
         self._state = State.TRACKING
         return self._target.estimate(1.0, State.TRACKING)
 

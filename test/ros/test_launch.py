@@ -46,6 +46,7 @@ def without_launch(monkeypatch):
 
     kinds = {
         "launch": ["LaunchDescription"],
+        "launch.conditions": ["IfCondition"],
         "launch.actions": ["DeclareLaunchArgument"],
         "launch.substitutions": ["LaunchConfiguration", "PathJoinSubstitution"],
         "launch_ros": [],
@@ -64,7 +65,7 @@ def test_the_python_file_loads_where_launch_is_installed():
 
 def test_both_files_say_the_same(without_launch):
     (entities,) = load_python().generate_launch_description().args
-    *arguments, node = entities
+    *arguments, node, page = entities
     in_python = {a.args[0]: (a.default_value, a.description) for a in arguments}
     in_xml = {a.get("name"): (a.get("default"), a.get("description")) for a in XML.iter("arg")}
     assert in_python.pop("params_file")[0].args[0][1:] == ["config", "tracker.yaml"]
@@ -72,17 +73,19 @@ def test_both_files_say_the_same(without_launch):
     assert in_python.pop("targets")[0].args[0] == inner(in_xml.pop("targets")[0]) == "name"
     assert in_python == in_xml
 
+    for made, element in zip((node, page), XML.iter("node"), strict=True):
+        assert (made.package, made.executable) == (element.get("pkg"), element.get("exec"))
+        remaps = {source: target.args[0] for source, target in vars(made).get("remappings", ())}
+        assert remaps == {r.get("from"): inner(r.get("to")) for r in element.iter("remap")}
+        set_here = {
+            p.get("name"): inner(p.get("value")) for p in element.iter("param") if p.get("name")
+        }
+        assert {name: value.args[0] for name, value in made.parameters[-1].items()} == set_here
     element = XML.find("node")
-    assert (node.package, node.executable) == (element.get("pkg"), element.get("exec"))
     first, second = node.arguments
     assert element.get("args") == f"{first} $(var {second.args[0]})" == "--targets $(var targets)"
     assert element.get("name") is None and not hasattr(node, "name")  # it renames all targets
-    remaps = {source: target.args[0] for source, target in node.remappings}
-    assert remaps == {r.get("from"): inner(r.get("to")) for r in element.iter("remap")}
-    set_here = {
-        p.get("name"): inner(p.get("value")) for p in element.iter("param") if p.get("name")
-    }
-    assert {name: value.args[0] for name, value in node.parameters[1].items()} == set_here
+    assert page.condition.args[0].args[0] == inner(XML.findall("node")[1].get("if"))
 
 
 def inner(text: str) -> str:

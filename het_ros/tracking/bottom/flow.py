@@ -143,11 +143,12 @@ class FlowEnsemble:
         start = centre + self._grid * (before.box.w, before.box.h)
         first = before.window.to_window(start)
         inside = ((first >= 0) & (first < before.gray.shape[::-1])).all(axis=1)
-        first = (first - 0.5).astype(np.float32)
-        guess = (window.to_window(start + expected - centre) - 0.5).astype(np.float32)
-        there, found = self._follow(before.gray, gray, first, guess)
-        back, returned = self._follow(gray, before.gray, there, first)
-        error = np.hypot(*(back - first).T)
+        points = np.asarray(first - 0.5, np.float32)
+        moved = window.to_window(start + expected - centre)
+        guess = np.asarray(moved - 0.5, np.float32)
+        there, found = self._follow(before.gray, gray, points, guess)
+        back, returned = self._follow(gray, before.gray, there, points)
+        error = np.hypot(*(back - points).T)
         good = inside & found & returned & (error < config.there_and_back)
         if good.sum() < config.fewest:
             return None

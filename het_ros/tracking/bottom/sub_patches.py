@@ -102,7 +102,8 @@ class SubPatchEnsembles:
     def scores_at(self, row: int, column: int) -> Floats:
         """(Q,) the sub-patches' scores of the last vote for a target with its corner there."""
         x, y = self.layout.offsets.T
-        return self.scores[np.arange(len(x)), row + y, column + x].astype(np.float64)
+        found = self.scores[np.arange(len(x)), row + y, column + x]
+        return np.asarray(found, np.float64)
 
     def learn(self, look: Look, box: Box, weight: float) -> None:
         """Take in the target in ``box``, image px; see :class:`BaseEnsemble`."""

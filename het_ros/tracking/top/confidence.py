@@ -15,9 +15,10 @@ from __future__ import annotations
 import math
 from dataclasses import astuple, dataclass
 
+from het_ros.tracking.calibration import Calibration
 from het_ros.tracking.estimate import State
+from het_ros.tracking.fitted import FITTED
 from het_ros.tracking.middle.fusion import Agreement
-from het_ros.tracking.top.calibration import CALIBRATION, CALIBRATION_WITH_NETWORK
 
 LARGEST = 50.0  # a logit beyond which nothing changes but that exp() overflows; geometry
 
@@ -50,16 +51,19 @@ class Features:
         return tuple(min(max(x, 0.0), most) for x, most in zip(astuple(self), limits, strict=True))
 
 
-def probability(features: Features, agreement: Agreement | None = None) -> float:
+def probability(
+    features: Features, agreement: Agreement | None = None, calibration: Calibration = FITTED
+) -> float:
     """Probability that the box at a place is right (overlap over 0.5), 0..1.
 
     Args:
         features: of the place.
         agreement: what a network says of it, where there is one.
+        calibration: the weights.
     """
-    known, fitted = features.clipped(), CALIBRATION
+    known, fitted = features.clipped(), calibration.without_network
     if agreement:
-        known, fitted = (*known, *astuple(agreement)), CALIBRATION_WITH_NETWORK
+        known, fitted = (*known, *astuple(agreement)), calibration.with_network
     *weights, bias = fitted
     logit = bias + sum(w * x for w, x in zip(weights, known, strict=True))
     return 1 / (1 + math.exp(-min(max(logit, -LARGEST), LARGEST)))
@@ -119,21 +123,24 @@ class Confidence:
 
     Args:
         lost_after: s without being recognised until a target is LOST.
+        calibration: weights of the probability.
 
     Attributes:
-        features: of the last frame, for the record; None before the first.
+        features, agreement: of the last frame, for the record; None before the first.
         unseen: frames since the box was last on a place that was found.
     """
 
-    def __init__(self, lost_after: float) -> None:
+    def __init__(self, lost_after: float, calibration: Calibration = FITTED) -> None:
         self._config = ConfidenceConfig()
         self._lost_after = lost_after
+        self._calibration = calibration
         self._score, self._colour = 1.0, 0.0
         self._frames = 0
         self._hidden_for = 0.0
         self._unrecognised = 0
         self._state = State.TRACKING
         self.features: Features | None = None
+        self.agreement: Agreement | None = None
         self.unseen = 0
 
     @property
@@ -176,7 +183,7 @@ class Confidence:
         )
         self.features = found
         self.agreement = agreement
-        likely = probability(found, agreement)
+        likely = probability(found, agreement, self._calibration)
         if self._frames <= config.new:
             likely = max(likely, config.back)
         ambiguous = elsewhere > config.ambiguous
