@@ -9,6 +9,8 @@ PYTHON ?= python3
 VENV := .venv
 PEERS := .venv-peers
 OLDEST := .venv-oldest
+SITE := .venv-site
+SITE_PACKAGES := 'mkdocs-material>=9.5,<10' 'mkdocstrings[python]>=0.26'
 VENV_EXTRAS := ros,opencv,bags,operator,test,build,fit
 PEERS_EXTRAS := ros,bags,evaluate
 BUILT := install/.built
@@ -22,8 +24,8 @@ WORKSPACE := $(ROS); source install/setup.bash
 PEERS_SPACE := $(CLEAN); source $(PEERS)/bin/activate; export AMENT_PREFIX_PATH="$$VIRTUAL_ENV"; \
 	source install/setup.bash
 
-.PHONY: help setup build run operator test test-oldest fuzz faults soak evaluate compare scenes fit bench docs \
-	count format clean
+.PHONY: help setup build run operator test test-oldest fuzz faults soak evaluate compare scenes fit \
+	bench docs site picture dist count coverage format clean
 
 help: ## What there is to make
 	@grep -E '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:[^#]*## /\t/' | expand -t 14
@@ -69,6 +71,12 @@ $(OLDEST)/.ready: setup.py test/oldest.txt
 	$(CLEAN); $(OLDEST)/bin/python -m pip install --quiet --disable-pip-version-check -r test/oldest.txt
 	@touch $@
 
+$(SITE)/.ready: setup.py
+	@echo 'Setting up $(SITE): MkDocs'
+	test -x $(SITE)/bin/python || $(PYTHON) -m venv $(SITE)
+	$(CLEAN); $(SITE)/bin/python -m pip install --quiet --disable-pip-version-check $(SITE_PACKAGES)
+	@touch $@
+
 $(BUILT): $(VENV)/.ready package.xml setup.py setup.cfg $(SOURCES)
 	$(ROS); colcon build --packages-select het_ros --event-handlers console_stderr- summary-
 	@touch $@
@@ -91,7 +99,8 @@ operator: run ## The same in a browser, to and fro: pick the target on the page 
 
 # Tests of many processes and of real time do not bear company; the others run side by side.
 # A choice by PYTEST may leave nothing to do (pytest's exit code 5) for one of the two.
-SIDE_BY_SIDE := test/tracking test/scene test/evaluation test/fuzz test/test_copyright.py \
+SIDE_BY_SIDE := test/tracking test/pages/test_examples.py test/pages/test_pages.py \
+	test/pages/test_words.py test/scene test/evaluation test/fuzz test/test_copyright.py \
 	test/tools/test_closed_loop.py test/tools/test_replay.py
 PYTEST ?=
 CHOSEN = $(PYTEST) $(if $(PYTEST),|| test $$? = 5)
@@ -156,11 +165,27 @@ bench: OUT ?= out/bench
 bench: $(BUILT) $(PEERS)/.ready ## Speed of the core and of the node, as ratios to the peers
 	@$(PEERS_SPACE); python -m het_ros.bench.cli --out '$(OUT)' $(if $(DATA),--data '$(DATA)') $(BENCH)
 
-docs: $(BUILT) ## Write what is generated from the parameter tables
-	@$(WORKSPACE); python -m het_ros.ros.reference .
+docs: $(BUILT) ## Write what is generated: parameters, and the map of the imports
+	@$(WORKSPACE); python -m het_ros.ros.reference .; python test/pages/import_map.py
 
-count: ## Lines, parameters and module constants of the tracker
+site: $(SITE)/.ready ## The pages as a web site in out/site; broken links are errors
+	@NO_MKDOCS_2_WARNING=1 $(SITE)/bin/mkdocs build --strict --quiet
+	@echo 'open out/site/index.html'
+
+picture: $(BUILT) ## The moving picture of the README, from the recorded bag
+	@$(WORKSPACE); python -m het_ros.tools.replay bags/follow_walk --out out/picture; \
+		python -m het_ros.tools.picture out/picture/track.mp4 docs/images/follow_walk.webp
+
+coverage: $(BUILT) ## Which lines of the core and the node the tests reach; states it, gates nothing
+	@$(WORKSPACE); python -m pip install --quiet --disable-pip-version-check pytest-cov; \
+		python -m pytest -q --cov=het_ros.tracking --cov=het_ros.ros --cov-report=term:skip-covered \
+		test/tracking test/ros $(PYTEST)
+
+count: ## Lines, parameters and module constants of the tracker; lines of all parts, words of pages
 	@$(PYTHON) .ci/count.py
+	@for part in het_ros/*/ test examples; do \
+		printf '%7d lines  %s\n' $$(find $$part -name '*.py' -exec cat {} + | wc -l) $$part; done
+	@wc -l README.md; wc -w README.md CONTRIBUTING.md $$(find docs -name '*.md' | sort)
 
 format: $(VENV)/.ready ## Format the code
 	$(ROS); ruff check --fix .; ruff format .

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from het_ros.tracking.bottom.colour import ColourEnsemble
-from het_ros.tracking.bottom.ensemble import Look, Plane
+from het_ros.tracking.bottom.ensemble import BaseEnsemble, EnsembleFactory, Look, Plane
 from het_ros.tracking.bottom.flow import FlowEnsemble
 from het_ros.tracking.bottom.network import NetworkEnsemble, Proposal
 from het_ros.tracking.bottom.sub_patches import SubPatchEnsembles, draw_layout
@@ -99,13 +99,19 @@ class Target:
         image: (H, W, 3) or (H, W) uint8.
         box: the target in it.
         calibration: the fitted constants.
+        further: base ensembles beside those of the configuration; the vote of each multiplies.
 
     Raises:
         ValueError: it would take more memory than ``most_memory``.
     """
 
     def __init__(
-        self, config: TrackerConfig, image: Image, box: Box, calibration: Calibration = FITTED
+        self,
+        config: TrackerConfig,
+        image: Image,
+        box: Box,
+        calibration: Calibration = FITTED,
+        further: Sequence[EnsembleFactory] = (),
     ) -> None:
         rng = np.random.default_rng(config.seed)
         cells = target_cells((box.w, box.h), config.working_side)
@@ -126,7 +132,13 @@ class Target:
         self._patches = SubPatchEnsembles(layout, cells, rates, config.ridge, config.first_frame)
         self._colour = ColourEnsemble((cells[0] * cell, cells[1] * cell), cell, config.colour_rate)
         self._flow = FlowEnsemble(cell)
-        self._ensembles = (self._patches, self._colour, self._flow)
+        self._further = tuple(make(image, box) for make in further)
+        self._ensembles: tuple[BaseEnsemble, ...] = (
+            self._patches,
+            self._colour,
+            self._flow,
+            *self._further,
+        )
         # In gray images blur takes texture away as it does shape: the two must not count twice.
         self._colour_power = 0.7 if gray else 1.0
         self._config = config
@@ -259,6 +271,10 @@ class Target:
         if near is not None:
             # A factor: what slides over the target moves smoothly too, but does not look like it.
             response = response * (1 + self._config.flow_weight * near)
+        for ensemble in self._further:
+            share = ensemble.vote(look)
+            if share is not None:
+                response = response * (1 + share)
         return _Votes(template, colour, response)
 
     def _best_of(self, look: Look, votes: _Votes) -> _Found:

@@ -10,6 +10,7 @@ from collections.abc import Callable, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from het_ros.tracking.bottom.ensemble import EnsembleFactory
 from het_ros.tracking.box import Box
 from het_ros.tracking.config import TrackerConfig
 from het_ros.tracking.estimate import Estimate, State
@@ -28,10 +29,17 @@ class HierarchicalEnsembleTracker:
 
     Args:
         config: its parameters; by default ``TrackerConfig()``.
+        further: base ensembles of your own, each made anew for every target by a function of the
+            first image and box. A place with the vote v, in 0..1, gains by a factor of 1 + v.
     """
 
-    def __init__(self, config: TrackerConfig | None = None) -> None:
+    def __init__(
+        self,
+        config: TrackerConfig | None = None,
+        further: Sequence[EnsembleFactory] = (),
+    ) -> None:
         self.config = config or TrackerConfig()
+        self._further = tuple(further)
         self._target: Target | None = None
         self._state = State.IDLE
 
@@ -65,7 +73,7 @@ class HierarchicalEnsembleTracker:
                 would take more than ``most_memory``. The target followed before stays.
         """
         check_image(image, box)
-        self._target = Target(self.config, image, box)
+        self._target = Target(self.config, image, box, further=self._further)
         self._state = State.TRACKING
         return self._target.estimate(1.0, State.TRACKING)
 

@@ -1,12 +1,12 @@
 # Copyright 2026 het_ros maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""docs/RELIABILITY.md names tests that there are, and every fault's test is named."""
+"""docs/reference/fault-tests.md names tests that there are, and every fault's test is named."""
 
 import re
 from pathlib import Path
 
 HERE = Path(__file__).parent
-PAGE = (HERE.parents[1] / "docs" / "RELIABILITY.md").read_text()
+PAGE = (HERE.parents[1] / "docs" / "reference" / "fault-tests.md").read_text()
 FAULTS = ("restarts", "bad_streams", "two_hosts", "full_disk", "overload", "flood")
 ASIDE = {  # about the tests' own tools
     "test_the_process_that_has_ended_is_told",

@@ -4,6 +4,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Protocol
 
@@ -73,3 +74,7 @@ class BaseEnsemble(Protocol):
 
     def forget(self) -> None:
         """The target was not seen in this frame."""
+
+
+# Makes a base ensemble for a new target: (H, W, 3) or (H, W) uint8 and the box in it, image px.
+EnsembleFactory = Callable[[Pixels, Box], BaseEnsemble]
