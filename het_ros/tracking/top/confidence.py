@@ -1,6 +1,6 @@
 # Copyright 2026 het_ros maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""How far the place that was found can be trusted, and the state that follows.
+"""How likely the place that was found is right, and the state that follows.
 
 Features of the place go in; one calibrated probability that the box is right (overlap over 0.5)
 comes out, by a logistic regression that ``make fit`` writes. Everything else follows from it by
