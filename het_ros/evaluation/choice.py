@@ -8,7 +8,13 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from het_ros.evaluation import network_peers, opencv_peers
-from het_ros.evaluation.trackers import DEFAULT, TrackerSpec, split_names, tracker_spec
+from het_ros.evaluation.trackers import (
+    DEFAULT,
+    WITH_NETWORK,
+    TrackerSpec,
+    split_names,
+    tracker_spec,
+)
 
 
 @dataclass(frozen=True)
@@ -47,4 +53,6 @@ def chosen(text: str, models: Path | None = None) -> Choice:
     if absent := [n for n in network_peers.NAMES if n not in networks]:
         need = f"their files are not in {models}" if models else "they need a folder, MODELS"
         notes.append(f"Left out: {', '.join(absent)}; {need}: {network_peers.SOURCE}.")
-    return Choice([tracker_spec(name, models) for name in (*present, *networks)], notes)
+    ours = (WITH_NETWORK,) if "nanotrack-v3" in networks else ()
+    names = (*present, *ours, *networks)
+    return Choice([tracker_spec(name, models) for name in names], notes)

@@ -161,20 +161,15 @@ class Fit:
     quality: Quality
 
 
-def fitted(runs: Listing[Recorded]) -> dict[str, Fit]:
-    """Each regression of which anything was recorded, by its name.
-
-    Raises:
-        ValueError: too little was recorded for a fit.
-    """
-    found = {}
+def fitted(runs: Listing[Recorded]) -> tuple[dict[str, Fit], dict[str, str]]:
+    """Each regression by its name; and of the others why there is none."""
+    found, missing = {}, {}
     for name in WIDTHS:
         known = examples(runs, name)
-        if len(known):
-            try:
-                predicted = logistic.held_out(known)
-                weights = logistic.fit(known)
-            except ValueError as error:
-                raise ValueError(f"{name}: {error}; record more sequences") from None
-            found[name] = Fit(known, weights, predicted, logistic.quality(predicted, known))
-    return found
+        try:
+            predicted, weights = logistic.held_out(known), logistic.fit(known)
+        except ValueError as error:
+            missing[name] = str(error)
+            continue
+        found[name] = Fit(known, weights, predicted, logistic.quality(predicted, known))
+    return found, missing

@@ -140,6 +140,7 @@ def tracking_source() -> str:
 
 
 BASES: dict[str, type[Config]] = {"het": TrackerConfig, "het-paper": PaperConfig}
+WITH_NETWORK = "het-network"  # needs the folder of the networks' files
 DEFAULT = ("het", "het-paper", *opencv_peers.PEERS)
 
 
@@ -161,18 +162,19 @@ def split_names(text: str) -> list[str]:
 def tracker_spec(name: str, models: Path | None = None) -> TrackerSpec:
     """The tracker called ``name``.
 
-    Names: ``het``, ``het-paper``, ``identity``, a peer of OpenCV (``csrt``...), a network
-    (``nanotrack-v3``...; its files are looked for in ``models``), or a base with changes:
-    ``het:sub_patches=5,seed=3`` or ``het:file.yaml`` (also JSON; a mapping of fields, or a ROS
-    parameter file). ``label@het:...`` calls it ``label`` in the tables.
+    Names: ``het``, ``het-paper``, ``het-network`` (with NanoTrack v3 of ``models``),
+    ``identity``, a peer of OpenCV (``csrt``...), a network (``nanotrack-v3``...; its files are
+    looked for in ``models``), or a base with changes: ``het:sub_patches=5,seed=3`` or
+    ``het:file.yaml`` (also JSON; a mapping of fields, or a ROS parameter file).
+    ``label@het:...`` calls it ``label`` in the tables.
 
     Raises:
         ValueError: there is no such tracker, field or file, or a value is out of its range.
     """
     label, _, described = name.rpartition("@")
     base, _, changes = described.partition(":")
-    if base in BASES:
-        config = _changed(BASES[base](), changes)
+    if base in BASES or base == WITH_NETWORK:
+        config = _changed(_base(base, models), changes)
         values = json.dumps(dataclasses.asdict(config), sort_keys=True)
         libraries = f"numpy {np.__version__} opencv {cv2.__version__}"
         fingerprint = _hash(f"{values} {tracking_source()} {libraries}")
@@ -194,8 +196,16 @@ def tracker_spec(name: str, models: Path | None = None) -> TrackerSpec:
             network_peers.fingerprint(base, models),
             random=False,
         )
-    known = ", ".join((*DEFAULT, *network_peers.NAMES, "identity"))
+    known = ", ".join((*DEFAULT, WITH_NETWORK, *network_peers.NAMES, "identity"))
     raise ValueError(f"no tracker is called {base!r}; there are {known}")
+
+
+def _base(name: str, models: Path | None) -> Config:
+    """The configuration of one of ours, ``het-network`` with NanoTrack v3 of a folder."""
+    if name == WITH_NETWORK:
+        backbone, *_ = network_peers.files_of("nanotrack-v3", models)
+        return TrackerConfig(network=str(backbone.parent))
+    return BASES[name]()
 
 
 def _identity(seed: int) -> Identity:

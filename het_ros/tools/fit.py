@@ -188,12 +188,16 @@ def main(argv: list[str] | None = None) -> int:
         if options.seeds < 0 or options.off < 0 or options.seeds + options.off < 1:
             raise ValueError("--seeds and --off together must be 1 or more")
         runs = carried_out(planned(options, before), options.jobs)
-        fits = fitted(runs)
+        fits, missing = fitted(runs)
+        if not fits:
+            raise ValueError(f"nothing can be fitted: {'; '.join(set(missing.values()))}")
     except (ValueError, OSError) as error:
         print(f"fit: {error}", file=sys.stderr)
         return 2
     except KeyboardInterrupt:
         return INTERRUPTED
+    for name, reason in missing.items():
+        print(f"fit: {name} stays as it is: {reason}", file=sys.stderr)
     report(options, runs, fits, before)
     return 0
 

@@ -29,7 +29,9 @@ def test_two_runs_write_the_same_file(two_sequences, tmp_path, capsys):
     asked += ["--jobs", "1", "--out", str(out)]
     assert fit.main(asked) == 0
     first = out.read_bytes()
-    assert "without_network, held out: calibration error" in capsys.readouterr().out
+    said = capsys.readouterr()
+    assert "without_network, held out: calibration error" in said.out
+    assert "with_network stays as it is" in said.err
     out.unlink()
     assert fit.main(asked) == 0
     assert out.read_bytes() == first
