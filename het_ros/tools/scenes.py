@@ -4,8 +4,8 @@
 
 Each story is rendered from several seeds (street, clothes, gait, shake and noise), followed with
 the default configuration and judged: did TRACKING mean that the target was visible, did the box
-come back to it, was it ever confident on something else; and how far was the velocity from the true
-one. Prints two Markdown tables.
+come back to it, was it ever confident on something else; and how far was the velocity from the
+true one. Prints two Markdown tables.
 """
 
 from __future__ import annotations

@@ -7,6 +7,7 @@ import re
 import tokenize
 
 import pytest
+
 from pages.pages import PAGES, ROOT, name_of
 
 # What not to write, and what to write.

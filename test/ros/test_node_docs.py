@@ -18,8 +18,8 @@ def test_every_named_test_is_there():
     named = re.findall(r"`(test_\w+\.py)::(test_\w+)`", PAGE)
     assert len(named) > 50
     for file, test in named:
-        (path,) = (ROOT / "test").rglob(file)
-        assert f"def {test}(" in path.read_text(), f"{file}::{test}"
+        paths = (ROOT / "test").rglob(file)
+        assert any(f"def {test}(" in path.read_text() for path in paths), f"{file}::{test}"
 
 
 def test_every_output_has_its_row():
