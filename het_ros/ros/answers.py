@@ -5,8 +5,10 @@
 from __future__ import annotations
 
 import time
+from dataclasses import replace
 
 from diagnostic_msgs.msg import DiagnosticArray
+from geometry_msgs.msg import PoseStamped
 
 from het_ros.ros.debug_image import debug_message, drawn
 from het_ros.ros.detections import detections_message
@@ -19,6 +21,7 @@ from het_ros.ros.parameters import NodeConfig
 from het_ros.ros.space import Space
 from het_ros.ros.stamps import SECOND
 from het_ros.ros.status import Status, status_message
+from het_ros.ros.target_motion import TargetMotion, twist_in_scene
 from het_ros.tracking.estimate import State
 
 SEEN = (State.TRACKING, State.COASTING)
@@ -44,6 +47,7 @@ class Answers:
         self._outputs = outputs
         self._space = space
         self._drawn = 0
+        self._motion = TargetMotion()
 
     def publish(self, outcome: Outcome) -> None:
         """Publish an outcome; in LOST and without a track the status alone."""
@@ -57,19 +61,35 @@ class Answers:
         header, estimate, pixels = outcome.frame.header, outcome.estimate, outcome.pixels
         if estimate is None or pixels is None:
             return
-        box, size, track = estimate.box, (pixels.shape[1], pixels.shape[0]), outcome.track
+        now, size, track = estimate.box, (pixels.shape[1], pixels.shape[0]), outcome.track
+        velocity, ahead = estimate.velocity, self.settings.latency_ahead
+        if ahead:
+            estimate = replace(
+                estimate.predict(ahead), velocity=velocity, patches=estimate.patches
+            )
+        box = estimate.box
         send = self._outputs.send
         send("box", lambda: polygon_from_box(box, header))
         send("pose", lambda: pose_from_estimate(estimate, header))
         send("velocity", lambda: twist_from_estimate(estimate, header))
+        send("velocity_in_scene", lambda: twist_in_scene(estimate, header))
         send("bearing", lambda: self._space.bearing(box, size, header))
         # The depth is looked at whoever listens: it may tell that the box holds another thing.
         # While COASTING it is that of what hides the target.
         if outcome.state is State.TRACKING:
-            place = self._space.pose(box, size, header, track)
-            send("target_pose", lambda: place)
+            self._publish_place(self._space.pose(now, size, header, track), track)
         if "detections" in self._outputs:
             send("detections", lambda: detections_message(estimate, track, header))
+
+    def _publish_place(self, place: PoseStamped | None, track: int) -> None:
+        """Publish a track's place in metres, as measured and filtered."""
+        if place is None:
+            return
+        motion, ahead = self._motion, self.settings.latency_ahead
+        motion.take(place, track)
+        self._outputs.send("target_pose", lambda: motion.ahead(place, ahead))
+        self._outputs.send("target_pose_cov", lambda: motion.pose(place.header, ahead))
+        self._outputs.send("target_velocity", lambda: motion.velocity(place.header))
 
     def _status(self, outcome: Outcome) -> DiagnosticArray:
         status = Status(

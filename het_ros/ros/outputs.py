@@ -30,9 +30,12 @@ OUTPUTS: dict[str, type] = {
     "box": PolygonStamped,
     "pose": PoseWithCovarianceStamped,
     "velocity": TwistWithCovarianceStamped,
+    "velocity_in_scene": TwistWithCovarianceStamped,
     "status": DiagnosticArray,
     "bearing": Vector3Stamped,
     "target_pose": PoseStamped,
+    "target_pose_cov": PoseWithCovarianceStamped,
+    "target_velocity": TwistWithCovarianceStamped,
     "debug_image": Image,
 }
 

@@ -26,6 +26,9 @@ OUTPUT_TYPES = {  # by the name under the node's own
     "status": DIAGNOSTICS,
     "bearing": "geometry_msgs/msg/Vector3Stamped",
     "target_pose": "geometry_msgs/msg/PoseStamped",
+    "target_pose_cov": "geometry_msgs/msg/PoseWithCovarianceStamped",
+    "target_velocity": "geometry_msgs/msg/TwistWithCovarianceStamped",
+    "velocity_in_scene": "geometry_msgs/msg/TwistWithCovarianceStamped",
 }
 
 
