@@ -35,8 +35,9 @@ from het_ros.tracking.estimate import State
 
 
 class FollowerNode(Node):
-    """Reads ``tracker/status``, ``bearing``, ``pose``, ``target_pose`` and
-    ``target_velocity``; writes ``cmd_vel``.
+    """Reads the tracker's outputs and writes ``cmd_vel``.
+
+    It takes ``tracker/status``, ``bearing``, ``pose``, ``target_pose`` and ``target_velocity``.
 
     Args:
         clock: s, monotonic; a simulation gives its own and calls :meth:`tick` itself.

@@ -80,7 +80,7 @@ class TargetMotion:
         message = PoseStamped(header=header_of(stamp_ns(place.header), place.header.frame_id))
         message.pose.orientation = place.pose.orientation
         position, now = message.pose.position, place.pose.position
-        position.x, position.y, position.z = map(float, way + (now.x, now.y, now.z))
+        position.x, position.y, position.z = map(float, way + np.array([now.x, now.y, now.z]))
         return message
 
 
