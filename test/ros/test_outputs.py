@@ -321,3 +321,11 @@ def test_every_topic_has_qos_parameters(graph):
         assert f"{topic}.subscription.reliability" in names
     for topic in (*(f"/tracker/{name}" for name in tracker_node.OUTPUTS), "/diagnostics"):
         assert f"{topic}.publisher.depth" in names
+
+
+def test_motion_in_the_scene_and_in_metres(hand, made_footage):
+    hand.node.space.on_depth(depth_message(3.0, 1 + FRAME_TIME))
+    outputs = hand.image(made_footage[0][1], 1 + FRAME_TIME)
+    for topic in ("velocity_in_scene", "target_velocity", "target_pose_cov"):
+        assert outputs[topic].header == outputs["box"].header
+    assert outputs["target_pose_cov"].pose.pose.position.z == pytest.approx(3.0)
