@@ -30,7 +30,7 @@ class FollowerConfig:
     )
     turn_gain: float = parameter(2.0, "turn rate per bearing", unit="1/s", low=0.0, high=10.0)
     feed_forward: float = parameter(
-        1.0, "part of the target's own velocity that commands take over", low=0.0, high=1.0
+        0.0, "part of the target's own velocity that commands take over", low=0.0, high=1.0
     )
     max_linear: float = parameter(0.6, "fastest drive", unit="m/s", low=0.0, high=5.0)
     max_angular: float = parameter(1.0, "fastest turn", unit="rad/s", low=0.0, high=5.0)
