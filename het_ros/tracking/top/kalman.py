@@ -50,7 +50,8 @@ class AdaptiveKalman:
         self._first_spread = np.diag([measurement_noise**2, (acceleration * longest_dt) ** 2])
         self._steady = np.zeros(2)
         self._dt = nominal_dt
-        self.restart(centre)
+        self._state: Floats = np.stack([centre, np.zeros(2)])
+        self._spread: Floats = self._first_spread.copy()
         self._before = self._state
 
     def step(self, dt: float) -> float:
@@ -117,7 +118,7 @@ class AdaptiveKalman:
     @property
     def centre(self) -> Floats:
         """(cx, cy), px."""
-        return self._state[0].copy()
+        return np.array(self._state[0])
 
     @property
     def velocity(self) -> tuple[float, float]:
@@ -127,4 +128,4 @@ class AdaptiveKalman:
     @property
     def covariance(self) -> Floats:
         """(4, 4) of [cx, cy, vx, vy], px^2, px^2/s, px^2/s^2."""
-        return np.kron(self._spread, np.eye(2))
+        return np.asarray(np.kron(self._spread, np.eye(2)), np.float64)

@@ -131,7 +131,7 @@ class VelocityFilter:
     @property
     def centre(self) -> Floats:
         """(D,), px: the filtered centre."""
-        return self._state[0].copy()
+        return np.array(self._state[0])
 
     @property
     def centre_variance(self) -> float:
