@@ -8,6 +8,7 @@ import time
 from collections import deque
 
 from builtin_interfaces.msg import Time
+from geometry_msgs.msg import PoseStamped
 from std_msgs.msg import Float32, Header
 
 from het_ros.ros.debug_image import debug_message, drawn
@@ -28,6 +29,7 @@ from het_ros.ros.parameters import NodeConfig
 from het_ros.ros.space import Space
 from het_ros.ros.stamps import SECOND
 from het_ros.ros.status import Status, status_message
+from het_ros.ros.target_motion import TargetMotion, twist_in_scene
 from het_ros.tracking.box import Box
 from het_ros.tracking.estimate import Estimate, State
 
@@ -57,6 +59,7 @@ class Answers:
         self._space = space
         self._drawn = 0
         self._owed: deque[tuple[Box, tuple[int, int], Header, int]] = deque(maxlen=MOST_OWED)
+        self._motion = TargetMotion()
 
     def publish(self, outcome: Outcome) -> None:
         """Publish an outcome; in LOST and without a track status and score alone."""
@@ -97,31 +100,45 @@ class Answers:
         header, estimate, pixels = outcome.frame.header, outcome.estimate, outcome.pixels
         if estimate is None or pixels is None:
             return
-        box, size, track = estimate.box, (pixels.shape[1], pixels.shape[0]), outcome.track
+        size, track = (pixels.shape[1], pixels.shape[0]), outcome.track
+        ahead = self.settings.latency_ahead
+        later = estimate.predict(ahead) if ahead else estimate
+        box = later.box
         send = self._outputs.send
         send("box", lambda: polygon_from_box(box, header))
-        send("pose", lambda: pose_from_estimate(estimate, header))
+        send("pose", lambda: pose_from_estimate(later, header))
         send("velocity", lambda: twist_from_estimate(estimate, header))
+        send("velocity_in_scene", lambda: twist_in_scene(estimate, header))
         send("bearing", lambda: self._space.bearing(box, size, header))
         # The depth is looked at whoever listens: it may tell that the box holds another thing.
         # While COASTING it is that of what hides the target.
         if outcome.state is State.TRACKING:
-            self._place(box, size, header, track)
+            self._place(estimate.box, size, header, track)
         if "detections" in self._outputs:
-            send("detections", lambda: detections_message(estimate, track, header))
+            send("detections", lambda: detections_message(later, track, header))
 
     def place_late(self) -> None:
         """Publish where the target was in frames whose depth came after they were answered."""
         while self._owed and self._space.seen(self._owed[0][2]):
-            place = self._space.pose(*self._owed.popleft())
-            self._outputs.send("target_pose", lambda place=place: place)
+            owed = self._owed.popleft()
+            place = self._space.pose(*owed)
+            if place is not None:
+                self._publish_place(place, owed[-1])
+
+    def _publish_place(self, place: PoseStamped, track: int) -> None:
+        """Publish a track's place in metres, as measured and filtered."""
+        motion, ahead = self._motion, self.settings.latency_ahead
+        motion.take(place, track)
+        self._outputs.send("target_pose", lambda: motion.ahead(place, ahead))
+        self._outputs.send("target_pose_cov", lambda: motion.pose(place.header, ahead))
+        self._outputs.send("target_velocity", lambda: motion.velocity(place.header))
 
     def _place(self, box: Box, size: tuple[int, int], header: Header, track: int) -> None:
         """Publish where the target is, or keep in mind to do so when its depth comes."""
         place = self._space.pose(box, size, header, track)
         if place is not None:
             self._owed.clear()  # no place comes after that of a later frame
-            self._outputs.send("target_pose", lambda: place)
+            self._publish_place(place, track)
         elif not self._space.seen(header):
             self._owed.append((box, size, header, track))
 

@@ -7,11 +7,13 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
+from het_ros.ros.feed_forward import FeedForward
 from het_ros.ros.reckoning import Reckoning
 from het_ros.tracking.estimate import State
 from het_ros.tracking.parameter import check_parameters, parameter
 
 LONGEST_PREDICTION = 4.0  # s
+EASED = 0.6  # of the gains, while the target's own velocity is fed forward
 
 
 @dataclass(frozen=True)
@@ -27,6 +29,9 @@ class FollowerConfig:
         0.8, "speed per error of distance", unit="1/s", low=0.0, high=5.0
     )
     turn_gain: float = parameter(2.0, "turn rate per bearing", unit="1/s", low=0.0, high=10.0)
+    feed_forward: float = parameter(
+        0.0, "part of the target's own velocity that commands take over", low=0.0, high=1.0
+    )
     max_linear: float = parameter(0.6, "fastest drive", unit="m/s", low=0.0, high=5.0)
     max_angular: float = parameter(1.0, "fastest turn", unit="rad/s", low=0.0, high=5.0)
     timeout: float = parameter(
@@ -66,6 +71,7 @@ class Follower:
         self._aimed = -math.inf
         self._placed = -math.inf
         self._reckoning = Reckoning()
+        self._ahead = FeedForward(config.timeout)
 
     def on_status(self, state: State, now: float) -> None:
         """Take the state of the track."""
@@ -86,11 +92,17 @@ class Follower:
         """Take where the target is, m to the right and forward."""
         self._placed = now
         self._reckoning.seen(x, z, now)
+        self._ahead.on_place(x, z)
+
+    def on_velocity(self, x: float, z: float, now: float) -> None:
+        """Take the target's velocity relative to the camera, m/s to the right and forward."""
+        self._ahead.on_velocity(x, z, now)
 
     def command(self, now: float) -> tuple[float, float]:
         """(m/s forward, rad/s to the left) from now on; (0, 0) when in doubt."""
         linear, angular = self._wanted(now)
         self._reckoning.told(linear, angular, now)
+        self._ahead.told(linear, angular)
         return linear, angular
 
     def _wanted(self, now: float) -> tuple[float, float]:
@@ -107,17 +119,26 @@ class Follower:
         x, z = self._reckoning.predicted(now)
         if self._state is State.COASTING:
             bearing = math.atan2(x, z)
-        return self._speed(math.hypot(x, z), bearing, unknown_for), self._turn(bearing)
+        part = config.feed_forward if self._ahead.known(now) else 0.0
+        outwards, around = (part * rate for rate in self._ahead.rates(x, z, now))
+        # What is driven ahead need not be caught up with: small gains pass on less noise.
+        gain = 1 - EASED * part
+        speed = self._speed(math.hypot(x, z), bearing, unknown_for, gain, outwards)
+        return speed, self._turn(bearing, gain, around)
 
-    def _turn(self, bearing: float) -> float:
-        return _limited(-self.config.turn_gain * bearing, self.config.max_angular)
+    def _turn(self, bearing: float, gain: float = 1.0, around: float = 0.0) -> float:
+        turn = around - gain * self.config.turn_gain * bearing
+        return _limited(turn, self.config.max_angular)
 
-    def _speed(self, away: float, bearing: float, unknown_for: float) -> float:
+    def _speed(
+        self, away: float, bearing: float, unknown_for: float, gain: float, outwards: float
+    ) -> float:
         """The speed to a target so far away (m), whose place has been unknown for so long (s)."""
         config = self.config
         # Turn first, then drive: a target at the side is no place to drive to.
         ahead = max(math.cos(bearing), 0.0)
-        speed = _limited(config.drive_gain * (away - config.distance) * ahead, config.max_linear)
+        wanted = gain * config.drive_gain * (away - config.distance) + outwards
+        speed = _limited(wanted * ahead, config.max_linear)
         if unknown_for <= config.timeout:
             return speed
         if unknown_for >= config.drive_on:

@@ -19,6 +19,7 @@ from geometry_msgs.msg import (
     PoseStamped,
     PoseWithCovarianceStamped,
     TwistStamped,
+    TwistWithCovarianceStamped,
     Vector3Stamped,
 )
 from rclpy.clock import Clock, ClockType
@@ -34,7 +35,9 @@ from het_ros.tracking.estimate import State
 
 
 class FollowerNode(Node):
-    """Reads ``tracker/status``, ``bearing``, ``pose`` and ``target_pose``; writes ``cmd_vel``.
+    """Reads the tracker's outputs and writes ``cmd_vel``.
+
+    It takes ``tracker/status``, ``bearing``, ``pose``, ``target_pose`` and ``target_velocity``.
 
     Args:
         clock: s, monotonic; a simulation gives its own and calls :meth:`tick` itself.
@@ -52,6 +55,7 @@ class FollowerNode(Node):
             ("bearing", Vector3Stamped, self.on_bearing),
             ("pose", PoseWithCovarianceStamped, self.on_pose),
             ("target_pose", PoseStamped, self.on_target_pose),
+            ("target_velocity", TwistWithCovarianceStamped, self.on_target_velocity),
         ):
             self.create_subscription(kind, f"tracker/{topic}", callback, 1)
         config = self.follower.config
@@ -79,6 +83,11 @@ class FollowerNode(Node):
         """Take ``~/target_pose``."""
         place = message.pose.position
         self.follower.on_place(place.x, place.z, self._now())
+
+    def on_target_velocity(self, message: TwistWithCovarianceStamped) -> None:
+        """Take ``~/target_velocity``."""
+        linear = message.twist.twist.linear
+        self.follower.on_velocity(linear.x, linear.z, self._now())
 
     def tick(self) -> tuple[float, float]:
         """Publish the command of this moment, and return it (m/s, rad/s)."""

@@ -31,10 +31,13 @@ OUTPUTS: dict[str, type] = {
     "box": PolygonStamped,
     "pose": PoseWithCovarianceStamped,
     "velocity": TwistWithCovarianceStamped,
+    "velocity_in_scene": TwistWithCovarianceStamped,
     "status": DiagnosticArray,
     "score": Float32,
     "bearing": Vector3Stamped,
     "target_pose": PoseStamped,
+    "target_pose_cov": PoseWithCovarianceStamped,
+    "target_velocity": TwistWithCovarianceStamped,
     "debug_image": Image,
 }
 

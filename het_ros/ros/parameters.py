@@ -112,6 +112,14 @@ class NodeConfig:
         "with depth, whatever else comes into the box, a column before the target or the wall "
         "behind it, is not followed; false where the depth is unreliable",
     )
+    latency_ahead: float = parameter(
+        0.0,
+        "box, pose and place are published as they will be this much after their image, whose "
+        "stamp they keep: about the time in which the robot reacts",
+        unit="s",
+        low=0.0,
+        high=1.0,
+    )
     debug_rate: float = parameter(
         10.0,
         "most debug images a second; they are drawn only for subscribers",

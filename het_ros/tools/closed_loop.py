@@ -118,7 +118,7 @@ class Loop:
         self.tracker.on_image(debug_message(frame.image, header))
         if index == 0 and frame.box is not None:
             self.tracker.on_init_box(polygon_from_box(frame.box, header))
-        for topic in ("bearing", "target_pose", "pose", "status"):
+        for topic in ("bearing", "target_velocity", "target_pose", "pose", "status"):
             if topic in self._outputs:
                 getattr(self._follower, f"on_{topic}")(self._outputs[topic])
         command = self._follower.tick()
@@ -252,7 +252,14 @@ def _figures(moments: list[Moment], rate: float) -> list[str]:
         f"TRACKING beside it in {wrong}",
         f"distance  {np.mean(away):.2f} m (mean), {min(away):.2f} to {max(away):.2f} m; "
         f"to the column at least {min(moment.clearance for moment in moments):.2f} m",
+        f"commands  {_roughness(moments, 0):.4f} m/s and {_roughness(moments, 1):.4f} rad/s, root "
+        "mean square of the change from one to the next",
     ]
+
+
+def _roughness(moments: list[Moment], part: int) -> float:
+    commands = np.array([moment.command[part] for moment in moments])
+    return float(np.sqrt((np.diff(commands) ** 2).mean()))
 
 
 def _on_it(moment: Moment) -> bool:

@@ -5,6 +5,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -26,6 +27,9 @@ OUTPUT_TYPES = {  # by the name under the node's own
     "status": DIAGNOSTICS,
     "bearing": "geometry_msgs/msg/Vector3Stamped",
     "target_pose": "geometry_msgs/msg/PoseStamped",
+    "target_pose_cov": "geometry_msgs/msg/PoseWithCovarianceStamped",
+    "target_velocity": "geometry_msgs/msg/TwistWithCovarianceStamped",
+    "velocity_in_scene": "geometry_msgs/msg/TwistWithCovarianceStamped",
 }
 
 
@@ -47,6 +51,7 @@ def read_answers(
     """
     boxes: dict[int, Box] = {}
     velocities: dict[int, tuple[float, float]] = {}
+    deviations: dict[int, float] = {}
     statuses: dict[int, dict[str, str]] = {}
     with BagReader(bag) as reader:
         topics = {f"{tracker}/{name}": name for name in ("box", "velocity", "status")}
@@ -57,12 +62,14 @@ def read_answers(
             elif topics[topic] == "velocity":
                 linear = message.twist.twist.linear
                 velocities[stamp] = (float(linear.x), float(linear.y))
+                deviations[stamp] = max(float(message.twist.covariance[0]), 0.0) ** 0.5
             else:
                 statuses[stamp] = status_values(message)
-    return [
+    rows = [
         _row(stamp, statuses.get(stamp), boxes.get(stamp), velocities.get(stamp))
         for stamp in stamps
     ]
+    return [replace(row, velocity_deviation=deviations.get(row.stamp)) for row in rows]
 
 
 def read_latencies(bag: Path | str, tracker: str = DEFAULT_TRACKER) -> NDArray[np.float64]:

@@ -12,6 +12,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
+from het_ros.evaluation.velocity_metrics import derivative
 from het_ros.tools.drawing import STATE_COLOURS
 from het_ros.tools.results import Row
 from het_ros.tools.summary import Truth
@@ -137,7 +138,15 @@ def _plot_speed(
     axis: Axes, time: NDArray[np.float64], rows: Sequence[Row], truth: Sequence[Truth]
 ) -> None:
     speed = [np.hypot(*row.velocity) if row.velocity else np.nan for row in rows]
-    axis.plot(time, speed, "C2", linewidth=1.4)
+    known = [row.velocity_deviation or np.nan for row in rows]
+    low, high = np.maximum(np.subtract(speed, known), 0), np.add(speed, known)
+    axis.fill_between(time, low, high, color="C2", alpha=0.25, linewidth=0, label="deviation")
+    if len(time) > 1 and any(true.box for true in truth):
+        step = float(np.median(np.diff(time)))
+        true = derivative(_centres([frame.box for frame in truth]), step)
+        axis.plot(time, np.hypot(*true.T), "k:", linewidth=1, label="truth")
+    axis.plot(time, speed, "C2", linewidth=1.4, label="speed")
+    axis.legend(loc="upper left", bbox_to_anchor=(1.0, 1.0), fontsize=8)
     axis.set_ylabel("speed / px/s")
 
 

@@ -6,7 +6,7 @@ from __future__ import annotations
 
 import csv
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 
 from het_ros.tracking.box import Box
@@ -25,6 +25,7 @@ class Row:
         velocity: (vx, vy) of its centre, px/s; None like the box.
         score: 0..1; None without an answer.
         state: None if no answer came to this frame.
+        velocity_deviation: of each part of the velocity, px/s; not in the file.
     """
 
     stamp: int
@@ -32,6 +33,7 @@ class Row:
     velocity: tuple[float, float] | None = None
     score: float | None = None
     state: State | None = None
+    velocity_deviation: float | None = field(default=None, compare=False)
 
 
 def write_csv(rows: Iterable[Row], path: Path | str) -> None:

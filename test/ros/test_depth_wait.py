@@ -136,6 +136,13 @@ def test_it_waits_again_once_depth_comes_in_time():
     assert late[-1] and not wait.in_vain
 
 
+def depth_message(header):
+    pixels = np.full((120, 160), 3.0, np.float32)
+    return Image(
+        header=header, width=160, height=120, encoding="32FC1", step=640, data=pixels.tobytes()
+    )
+
+
 class DepthCamera(Node):
     """Sends images and depth when they are due, and keeps states and places by stamp."""
 
@@ -164,11 +171,8 @@ class DepthCamera(Node):
         for i, pixels in enumerate(frames):
             header = header_at(1 + i / rate)
             events.append((i / rate, i, self.images, image_message(pixels, header)))
-            depth = Image(
-                header=header, width=160, height=120, encoding="32FC1", step=640,
-                data=np.full((120, 160), 3.0, np.float32).tobytes(),
-            )  # fmt: skip
-            events.append((i / rate + drawn.uniform(*lag), i, self.depths, depth))
+            due = i / rate + drawn.uniform(*lag)
+            events.append((due, i, self.depths, depth_message(header)))
         came = []
         node.images.join(lambda frame: came.append(1))
         on_depth = node.space.on_depth
@@ -222,6 +226,26 @@ def test_nearly_every_tracking_frame_has_its_place(graph, made_footage, rate, la
     assert sum(header in placed for header in tracking) >= 0.95 * len(tracking)
     stamps = [header.stamp.sec + 1e-9 * header.stamp.nanosec for header in placed]
     assert stamps == sorted(stamps)
+
+
+def test_late_places_are_filtered_too(graph, made_footage):
+    """Depth that comes after its image was answered gives all that is known in metres."""
+    frames, box = made_footage
+    sent = []
+    node = graph.keep(TrackerNode(context=graph.context, tap=lambda *output: sent.append(output)))
+    node.space.on_camera_info(
+        CameraInfo(width=160, height=120, k=[200.0, 0.0, 80.0, 0.0, 200.0, 60.0, 0.0, 0.0, 1.0])
+    )
+    node.on_image(image_message(frames[0], header_at(1.0)))
+    node.on_init_box(box_message(box))
+    node.on_image(image_message(frames[1], header_at(1.1)))
+    topics = ("target_pose", "target_pose_cov", "target_velocity")
+    assert not {topic for topic, _ in sent} & set(topics)
+    for stamp in (1.0, 1.1):
+        node._on_depth(depth_message(header_at(stamp)), {})
+    for topic in topics:
+        stamps = [message.header for name, message in sent if name == topic]
+        assert stamps == [header_at(1.0), header_at(1.1)]
 
 
 def test_the_witness_waits_too(graph, made_footage):

@@ -263,3 +263,48 @@ def test_every_topic_has_qos_parameters(graph):
         assert f"{topic}.subscription.reliability" in names
     for topic in (*(f"/tracker/{name}" for name in tracker_node.OUTPUTS), "/diagnostics"):
         assert f"{topic}.publisher.depth" in names
+
+
+def test_motion_in_the_scene_and_in_metres(hand, made_footage):
+    hand.node.space.on_depth(depth_message(3.0, 1 + FRAME_TIME))
+    outputs = hand.image(made_footage[0][1], 1 + FRAME_TIME)
+    for topic in ("velocity_in_scene", "target_velocity", "target_pose_cov"):
+        assert outputs[topic].header == outputs["box"].header
+    assert outputs["target_pose_cov"].pose.pose.position.z == pytest.approx(3.0)
+
+
+def test_latency_ahead_moves_places_and_no_velocity(graph, made_footage):
+    """Two nodes on the same images; one publishes what will be half a second later."""
+    frames, box = made_footage
+    ahead = 0.5
+    hands = [
+        ByHand(graph, parameter_overrides=[Parameter("latency_ahead", value=seconds)])
+        for seconds in (0.0, ahead)
+    ]
+    for hand in hands:
+        hand.node.space.on_camera_info(CameraInfo(width=160, height=120, k=MATRIX))
+        hand.image(frames[0], 1.0)
+        hand.box(box)
+    for i in range(1, 12):
+        time = 1 + i * FRAME_TIME
+        for hand in hands:
+            hand.node.space.on_depth(depth_message(3.0, time))
+        now, later = (hand.image(frames[i], time) for hand in hands)
+
+    speed = now["velocity"].twist.twist.linear
+    assert np.hypot(speed.x, speed.y) > 10  # px/s: there is a way to go
+    for topic in ("velocity", "velocity_in_scene", "target_velocity"):
+        assert later[topic] == now[topic]
+    way = np.subtract(*(box_from_polygon(each["box"]).centre for each in (later, now)))
+    centre = later["pose"].pose.pose.position
+    assert (centre.x, centre.y) == pytest.approx(box_from_polygon(later["box"]).centre, abs=1e-3)
+    assert np.dot(way, [speed.x, speed.y]) > 0
+    assert later["bearing"] != now["bearing"]
+    metres = now["target_velocity"].twist.twist.linear
+    for topic in ("target_pose", "target_pose_cov"):
+        assert later[topic].header == now[topic].header == now["box"].header
+        here, there = (each[topic].pose for each in (now, later))
+        here, there = (getattr(pose, "pose", pose).position for pose in (here, there))
+        moved = np.array([there.x - here.x, there.y - here.y])
+        assert np.dot(moved, [metres.x, metres.y]) > 0
+    assert later["pose"].pose.covariance[0] > now["pose"].pose.covariance[0]

@@ -50,9 +50,8 @@ class AdaptiveKalman:
         self._first_spread = np.diag([measurement_noise**2, (acceleration * longest_dt) ** 2])
         self._steady = np.zeros(2)
         self._dt = nominal_dt
-        self._state: Floats
-        self._spread: Floats
-        self.restart(centre)
+        self._state: Floats = np.stack([centre, np.zeros(2)])
+        self._spread: Floats = self._first_spread.copy()
         self._before = self._state
 
     def step(self, dt: float) -> float:
