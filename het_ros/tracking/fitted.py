@@ -17,10 +17,10 @@ Held out, each sequence weighing the same:
     with_network: calibration error 0.035, ROC 0.638, 18085 frames, 86% right
     network_is_right: calibration error 0.193, ROC 0.635, 62 frames, 92% right
 
-``without_network`` is not that of this run but RECORDED_WITH's, which was fitted to tracks of several
-judgements: this run's (4.369, 1.534, 3.69, -2.332, -0.785, -4.24, -6.151) costs 0.02 of AUC, paired
-over 37 sequences and 3 seeds. Tracks that are judged by `moved` show few large ones, so a fit to them
-says too little of it.
+``without_network`` is not that of this run but RECORDED_WITH's, which was fitted to tracks of
+several judgements: this run's (4.369, 1.534, 3.69, -2.332, -0.785, -4.24, -6.151) costs 0.02 of
+AUC, paired over 37 sequences and 3 seeds. Tracks that are judged by `moved` show few large ones,
+so a fit to them says too little of it.
 """
 
 from het_ros.tracking.calibration import Calibration
