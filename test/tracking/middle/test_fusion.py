@@ -145,9 +145,8 @@ def test_the_tracker_goes_where_both_say_or_the_likelier(
     started, noise, monkeypatch, centre, score, goes, differ
 ):
     monkeypatch.setattr(MadeNetwork, "said", proposal(SIZE, score, centre=centre))
-    if differ and score == 1.0:  # whatever the ensembles say
-        sure = dataclasses.replace(FITTED, network_is_right=(9.0, 0.0, 0.0, 0.0))
-        started.target._fusion = FusionConfig.of(sure)
+    by_its_score = dataclasses.replace(FITTED, network_is_right=(9.0, 0.0, 0.0, -1.0))
+    started.target._fusion = FusionConfig.of(by_its_score)
     started.update(noise, 1 / 30)
     assert (started.target.disagreement is not None) is differ
     np.testing.assert_allclose(started.target.judged.centre, goes, atol=0.6)
