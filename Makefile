@@ -57,7 +57,7 @@ define make_venv
 	@touch $(1)/.ready
 endef
 
-$(VENV)/.ready: setup.py
+$(VENV)/.ready: setup.py package.xml
 	@echo 'Setting up $(VENV): ROS 2 Jazzy and tools from PyPI, about a minute and 1 GB'
 	$(call make_venv,$(VENV),$(VENV_EXTRAS))
 
@@ -171,6 +171,9 @@ docs: $(BUILT) ## Write what is generated: parameters, and the map of the import
 site: $(SITE)/.ready ## The pages as a web site in out/site; broken links are errors
 	@NO_MKDOCS_2_WARNING=1 $(SITE)/bin/mkdocs build --strict --quiet
 	@echo 'open out/site/index.html'
+
+dist: ## Wheel and sdist into out/dist, each tried in an empty environment
+	@$(CLEAN); $(PYTHON) .ci/dist.py out/dist
 
 picture: $(BUILT) ## The moving picture of the README, from the recorded bag
 	@$(WORKSPACE); python -m het_ros.tools.replay bags/follow_walk --out out/picture; \

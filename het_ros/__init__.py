@@ -11,8 +11,7 @@ if TYPE_CHECKING:
     from het_ros.tracking.box import Box
     from het_ros.tracking.config import TrackerConfig
     from het_ros.tracking.estimate import Estimate, Patch, State
-    from het_ros.tracking.target import Witness
-    from het_ros.tracking.tracker import HierarchicalEnsembleTracker
+    from het_ros.tracking.tracker import HierarchicalEnsembleTracker, Witness
 
     __version__: str
 
@@ -34,7 +33,7 @@ _HOMES = {
     "Patch": "estimate",
     "State": "estimate",
     "TrackerConfig": "config",
-    "Witness": "target",
+    "Witness": "tracker",
 }
 
 

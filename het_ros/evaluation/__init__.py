@@ -1,6 +1,6 @@
 # Copyright 2026 het_ros maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""Figures that anyone can trust: trackers, sequences, protocols, scores and reports.
+"""Figures that can be checked: trackers, sequences, protocols, scores and reports.
 
 The way of a run: ``readers`` find the sequences, ``trackers`` build what is compared,
 ``protocols`` lay out where runs start, ``jobs`` run them through ``cache`` and joblib,

@@ -64,7 +64,7 @@ def recorded(
 
     Args:
         sequence, group: see :class:`Recorded`.
-        frames: images and true boxes, px; None where the target is not in sight.
+        frames: images and true boxes, px; None where the target is not visible.
         start: the box that is given, px.
         dt: time between two frames, s.
         config: of the tracker.

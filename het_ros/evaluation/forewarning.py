@@ -73,7 +73,7 @@ def forewarning(pairs: Iterable[tuple[Run, NDArray[np.float64]]]) -> dict[str, A
 def failures(run: Run, truth: NDArray[np.float64]) -> list[Failure]:
     """Every failure of a run, see :func:`forewarning`."""
     bad = _bad(run, truth)
-    doubt = ~(run.track.scores >= DOUBT)  # no score is no trust
+    doubt = ~(run.track.scores >= DOUBT)  # no score counts as doubt
     edges = np.flatnonzero(np.diff(np.concatenate([[0], bad.astype(int), [0]])))
     found = []
     for first, end in zip(edges[::2], edges[1::2], strict=True):

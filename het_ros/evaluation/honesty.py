@@ -1,6 +1,6 @@
 # Copyright 2026 het_ros maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""How far a tracker's own score can be trusted, for every tracker that gives one."""
+"""How often a tracker's own score is right, for every tracker that gives one."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from het_ros.evaluation.state_metrics import calibration, longest_row
 
 Floats = NDArray[np.float64]
 
-CONFIDENT = 0.5  # a score above is trusted
+CONFIDENT = 0.5  # a score above counts as confident
 THRESHOLDS = 101  # of the score, at its quantiles over all runs
 
 

@@ -192,7 +192,7 @@ def _run(options: argparse.Namespace) -> int:
 
 
 def told(result: dict[str, Any]) -> list[str]:
-    """The verdict in words."""
+    """The result in words."""
     f = result["figures"]
     lines = [
         f"{f['seconds'] / 60:.1f} minutes at {f['rate']:.1f} frames/s, {f['sent']} sent, "

@@ -21,7 +21,7 @@ Row = Mapping[str, Any]
 
 
 def judge(rows: Sequence[Row]) -> dict[str, Any]:
-    """Figures and verdict.
+    """Figures, and which bounds they keep.
 
     Memory, latency and files of the last fifth of the run are compared with those of the first,
     after a warm-up. Latency is looked at twice: as it is, and relative to the time that the

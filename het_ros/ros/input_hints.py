@@ -43,7 +43,7 @@ class InputHints:
         self._told: set[str] = set()
 
     def look(self, outputs: Outputs) -> None:
-        """Hint at inputs that did not come although an output of theirs is subscribed to."""
+        """Log, once each, which inputs are missing for an output that is subscribed to."""
         now = self._clock()
         for output, inputs in NEEDS.items():
             if not outputs.heard(output):

@@ -110,7 +110,7 @@ class NodeConfig:
     depth_witness: bool = parameter(
         True,
         "with depth, whatever else comes into the box, a column before the target or the wall "
-        "behind it, is not followed; false where the depth is not to be trusted",
+        "behind it, is not followed; false where the depth is unreliable",
     )
     latency_ahead: float = parameter(
         0.0,

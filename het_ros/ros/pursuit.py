@@ -128,7 +128,7 @@ class Pursuit:
 
         Returns:
             The image's outcome, or None where the box waits for its image. After a past image
-            the pursuit is :attr:`busy` with those since.
+            it is :attr:`busy` with those since.
 
         Raises:
             BoxError: the box does not fit its image, which is not kept any more or never came;

@@ -31,7 +31,7 @@ class Status:
 
     Attributes:
         state: where the track stands.
-        score: 0..1, how far the box can be trusted; 0 without one.
+        score: 0..1, probability that the box is right; 0 without one.
         latency: s from the frame's arrival to the status.
         age: s since the target was last measured; 0 while it is, and without a target.
         reason: why the state is not TRACKING; empty while it is.

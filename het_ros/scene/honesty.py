@@ -16,7 +16,7 @@ from het_ros.tracking.estimate import Estimate, State
 from het_ros.tracking.features.channels import gray_of
 from het_ros.tracking.tracker import HierarchicalEnsembleTracker
 
-CONFIDENT = 0.5  # a score above is trusted
+CONFIDENT = 0.5  # a score above counts as confident
 IN_SIGHT = 0.02  # part of the target that must be seen for it to be visible
 WHOLE = 0.9  # part from which on nothing covers it
 ON_IT = 0.3  # overlap from which on a box is on somebody
@@ -53,7 +53,7 @@ class Moment:
 
     @property
     def tracked(self) -> bool:
-        """Whether it is said to be in sight."""
+        """Whether it is said to be visible."""
         return self.estimate.state is State.TRACKING
 
     @property
@@ -73,7 +73,7 @@ class Honesty:
 
     Attributes:
         f_of_visible: F of TRACKING as the answer to "is the target visible?".
-        back_after: s from when it was in sight again until the box was on it; None where it was
+        back_after: s from when it was visible again until the box was on it; None where it was
             never away or the box did not come back.
         ends_on_target: whether the last box is on it.
         confident_wrong: confident frames of which the box is not on the target.
@@ -99,7 +99,7 @@ def followed(
         if frame.index:
             estimate = tracker.update(image, 1 / config.rate)
         else:
-            assert frame.box is not None  # every story begins with the target in sight
+            assert frame.box is not None  # every story begins with a visible target
             estimate = tracker.init(image, frame.box)
         moments.append(Moment.of(frame, estimate, image_motion(scene, frame.stamp)))
     return moments

@@ -87,7 +87,7 @@ def run(job: Job) -> Recorded:
 def _run_scene(config: SceneConfig, job: Job) -> Recorded:
     scene = Scene(config)
     start = scene.frame(0).box
-    assert start is not None  # every story begins with the target in sight
+    assert start is not None  # every story begins with a visible target
 
     def frames() -> Iterator[tuple[Any, Box | None]]:
         for frame in scene.frames():

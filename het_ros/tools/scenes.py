@@ -3,9 +3,9 @@
 """Follow rendered stories with exact truth and tell how honest the tracker was.
 
 Each story is rendered from several seeds (street, clothes, gait, shake and noise), followed with
-the default configuration and judged: did TRACKING mean that the target was in sight, did the box
-come back to it, was it ever trusted on something else; and how far was the velocity from the true
-one. Prints two Markdown tables.
+the default configuration and judged: did TRACKING mean that the target was visible, did the box
+come back to it, was it ever confident on something else; and how far was the velocity from the
+true one. Prints two Markdown tables.
 """
 
 from __future__ import annotations

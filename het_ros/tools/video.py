@@ -22,7 +22,7 @@ class VideoWriter:
 
     Args:
         path: file to write; it is replaced if it exists.
-        rate: usual frames/s, a hint for the encoder.
+        rate: usual frames/s, which the encoder plans for.
     """
 
     def __init__(self, path: Path | str, rate: float) -> None:

@@ -52,7 +52,7 @@ class Estimate:
         covariance: (4, 4) float64 of the state [cx, cy, vx, vy], px^2, px^2/s, px^2/s^2; with what
             a box misses its target by for good, which is more the lower the score. Where two
             filters give place and velocity, no correlation of the two is given.
-        score: 0..1, how far the box can be trusted; 0 in LOST.
+        score: 0..1, probability that the box is right (overlap over 0.5); 0 in LOST.
         state: TRACKING, COASTING or LOST.
         patches: the Q sub-patches of this frame; empty when nothing was measured.
         velocity_in_scene: (vx, vy), px/s, without the camera's motion: against what stands still;

@@ -272,9 +272,9 @@ class Target:
             # A factor: what slides over the target moves smoothly too, but does not look like it.
             response = response * (1 + self._config.flow_weight * near)
         for ensemble in self._further:
-            share = ensemble.vote(look)
-            if share is not None:
-                response = response * (1 + share)
+            gain = ensemble.vote(look)
+            if gain is not None:
+                response = response * (1 + gain)
         return _Votes(template, colour, response)
 
     def _best_of(self, look: Look, votes: _Votes) -> _Found:
@@ -304,7 +304,7 @@ class Target:
     def _shows(self, look: Look, centre: Floats) -> bool:
         """Whether a target with its ``centre`` there is voted for in this look."""
         column, row = look.corner_of(centre).tolist()
-        return 0 <= row <= look.places[0] - 1 and 0 <= column <= look.places[1] - 1
+        return bool(0 <= row <= look.places[0] - 1 and 0 <= column <= look.places[1] - 1)
 
     def _fused(self, look: Look, votes: _Votes, proposal: Proposal) -> _Found:
         """The place that network and ensembles agree on, or the likelier of their two places."""

@@ -15,7 +15,7 @@ def test_a_run_is_recorded_frame_by_frame(moving):
     start = Box(*moving.truth[0])
     found = fit.recorded("moving", "g", iter(frames), start, 1 / 30, TrackerConfig(), FITTED)
     rows = found.rows[fit.WITHOUT]
-    assert rows.shape == (11, 8)
+    assert rows.shape == (11, 7)
     assert found.frames == 11
     assert rows[-3:, -1].tolist() == [0, 0, 0], "a box on an absent target is wrong"
 

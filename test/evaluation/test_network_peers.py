@@ -9,7 +9,7 @@ import cv2
 import numpy as np
 import pytest
 
-from het_ros import Box
+from het_ros import Box, TrackerConfig
 from het_ros.evaluation import network_peers, opencv_peers
 from het_ros.evaluation.choice import chosen
 from het_ros.evaluation.nanotrack import likeness
@@ -38,7 +38,17 @@ def test_names_of_folders_do_not_matter(models, tmp_path):
     assert list(network_peers.found(tmp_path)) == ["nanotrack-v3"]
 
 
-@pytest.mark.parametrize("name", NAMES)
+def test_ours_with_a_network_is_left_out_where_its_files_are_not(tmp_path):
+    assert "het-network" not in [spec.name for spec in chosen("", tmp_path).trackers]
+
+
+def test_ours_with_a_network_is_the_default_with_nanotrack_v3(models):
+    spec = tracker_spec("het-network:seed=3", models)
+    folder = network_peers.files_of("nanotrack-v3", models)[0].parent
+    assert spec.build.args[0] == TrackerConfig(network=str(folder), seed=3)
+
+
+@pytest.mark.parametrize("name", (*NAMES, "het-network"))
 def test_without_files_one_line_says_where_they_are(name, tmp_path):
     for folder in (None, tmp_path, tmp_path / "none"):
         with pytest.raises(ValueError, match=r"github.com/HonglinChu.*github.com/opencv"):
@@ -56,11 +66,11 @@ def test_the_report_says_which_networks_are_left_out_and_why(tmp_path):
 
 def test_with_a_folder_they_are_compared(models):
     names = [spec.name for spec in chosen("", models).trackers]
-    assert names[-4:] == list(NAMES)
+    assert names[-5:] == ["het-network", *NAMES]
     assert not any("nanotrack" in note for note in chosen("", models).notes)
 
 
-@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize("name", (*NAMES, "het-network"))
 def test_each_follows_real_frames_and_says_how_sure_it_is(name, models, data):
     if name != "nanotrack-v3" and not hasattr(cv2, "TrackerVit_create"):
         pytest.skip("this OpenCV is too old")

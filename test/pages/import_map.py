@@ -50,13 +50,17 @@ def reduced(edges: set[tuple[str, str]]) -> set[tuple[str, str]]:
     return {
         (a, b)
         for a, b in edges
-        if not any(b in reachable(c, set()) and a not in reachable(c, set()) for c in below[a] - {b})
+        if not any(
+            b in reachable(c, set()) and a not in reachable(c, set()) for c in below[a] - {b}
+        )
     }
 
 
 def drawing() -> str:
     """The map in Mermaid's language, which GitHub draws."""
-    edges = sorted(reduced({(a, b.split("/")[0]) if "/" not in a else (a, b) for a, b in imports()}))
+    edges = sorted(
+        reduced({(a, b.split("/")[0]) if "/" not in a else (a, b) for a, b in imports()})
+    )
     parts = sorted({part for edge in edges for part in edge})
     lines = ["```mermaid", "flowchart BT"]
     lines += [f'    {part.replace("/", "_")}["{part}"]' for part in parts if part != INSIDE]

@@ -2,9 +2,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Every command of README and tutorials is run as written, or it is said why it cannot be.
 
-They run in a folder of links to the checkout, so that nothing is written into it, with the files of
-a user in it: a video and a folder of images. ``ros2 run`` is a script that does what it does: start
-the executable that colcon installed.
+They run in a folder of links to the checkout, so that nothing is written into it, with the files
+of a user in it: a video and a folder of images. ``ros2 run`` is a script that does what it does:
+start the executable that colcon installed.
 """
 
 import os
@@ -14,6 +14,7 @@ import subprocess
 import cv2
 import pytest
 from moving_target import moving_target
+
 from pages.pages import ROOT, commands, name_of
 
 PAGES = [ROOT / "README.md", *sorted((ROOT / "docs" / "tutorials").glob("*.md"))]

@@ -7,6 +7,7 @@ import sys
 
 import numpy as np
 import pytest
+
 from pages.pages import BLOCK, DOCS, GENERATED, PAGES, ROOT, anchors, blocks, name_of
 
 LINK = re.compile(r"\[[^\]]*\]\(([^)\s]+)\)")

@@ -37,7 +37,7 @@ def test_two_runs_write_the_same_file(two_sequences, tmp_path, capsys):
     assert out.read_bytes() == first
 
     names = runpy.run_path(str(out))
-    assert len(names["FITTED"].without_network) == 8
+    assert len(names["FITTED"].without_network) == 7
     assert names["FITTED"].with_network == fitted.FITTED.with_network, "nothing was fitted to it"
     assert names["RECORDED_WITH"] == fitted.RECORDED_WITH
     described = " ".join(names["__doc__"].split())
@@ -62,7 +62,7 @@ def test_the_code_uses_the_file():
     config = FusionConfig()
     weights = config.by_score, config.by_votes, config.by_distance, config.bias
     assert weights == fitted.FITTED.network_is_right
-    known = Features(1.0, 0.8, 1.2, 1.0, 0.4, 0.1, 0.2)
+    known = Features(0.8, 1.2, 1.0, 0.4, 0.1, 0.2)
     assert probability(known) == probability(known, calibration=fitted.FITTED)
 
 

@@ -26,7 +26,7 @@ example:
       --sequences Crossing,Skiing --trackers het,csrt
 """
 # One pass, whose accuracy is the mean overlap. Restarts after failures (type supervised) are left
-# out: version 0.9 of the toolkit refuses them for every tracker of one object.
+# out: with them version 0.9 of the toolkit stopped ("multiple objects were provided").
 STACK = """\
 title: One pass
 experiments:

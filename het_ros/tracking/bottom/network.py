@@ -31,6 +31,9 @@ class NetworkConfig:
         window: share of the Hann window around the prediction.
         penalty: for a change of size and aspect.
         smallest: side of a box, px (geometry).
+        bias: part of the difference of the first box from the network's own there that is kept
+            (chosen: half, what is given is drawn by other rules than the network's boxes).
+        most_bias: most of that difference, in logarithms of the size and in sides (chosen).
     """
 
     window: float = 0.455
@@ -87,7 +90,7 @@ class NetworkEnsemble:
         self._network.template(pixels, box)
         scores, boxes = self._network.look(pixels, box.centre, (box.w, box.h))
         best = np.unravel_index(int((scores * self._window).argmax()), scores.shape)
-        x, y, width, height = boxes[(slice(None), *best)].tolist()
+        x, y, width, height = boxes[:, best[0], best[1]].tolist()
         wanted = np.array([box.w, box.h])
         seen = np.maximum(np.array([width, height]), self._config.smallest)
         most, belief = self._config.most_bias, self._config.bias

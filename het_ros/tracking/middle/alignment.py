@@ -12,6 +12,7 @@ The correlation of x and T says how far the result is believed.
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -127,4 +128,4 @@ class FirstFrameAlignment:
     def _correlation(self, look: Features) -> float:
         """Of features (d,) with the first frame's, -1..1."""
         energy = float(look @ look) * float(self._first @ self._first)
-        return float(look @ self._first) / max(energy, 1e-12) ** 0.5
+        return float(look @ self._first) / math.sqrt(max(energy, 1e-12))

@@ -1,6 +1,6 @@
 # Copyright 2026 het_ros maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""How far the place that was found can be trusted, and the state that follows.
+"""How likely the place that was found is right, and the state that follows.
 
 Features of the place go in; one calibrated probability that the box is right (overlap over 0.5)
 comes out, by a logistic regression that ``make fit`` writes. Everything else follows from it by
@@ -75,10 +75,13 @@ class ConfidenceConfig:
 
     Attributes:
         hidden: below this a target that was there is hidden (chosen: hysteresis to ``back``).
-        back: from this on a hidden target is back (chosen: more likely right than not).
+        back: from this on a hidden target is back (honesty: from 0.5 on the column that hides the
+            walker of the recorded bag is taken for it).
+        unsure: the score is at most this while the target is hidden or ambiguous (chosen: no
+            confident box).
         learn_from, learn_whole: between these the learning weight rises from 0 to 1 (chosen).
         ambiguous: a distractor over this share of the score may be the target as well: nothing
-            is learnt, the score is at most ``back`` (chosen).
+            is learnt, the score is at most ``unsure`` (chosen).
         new: frames in which a target that was just given is learnt whatever is said (chosen: the
             regression is learnt from too few frames to judge).
         stay_within: distance from the prediction up to which the box stays on the best place,
@@ -89,7 +92,8 @@ class ConfidenceConfig:
     """
 
     hidden: float = 0.15
-    back: float = 0.5
+    back: float = 0.65
+    unsure: float = 0.5
     learn_from: float = 0.4
     learn_whole: float = 0.7
     ambiguous: float = 0.9
@@ -185,10 +189,10 @@ class Confidence:
         self.agreement = agreement
         likely = probability(found, agreement, self._calibration)
         if self._frames <= config.new:
-            likely = max(likely, config.back)
+            likely = max(likely, config.unsure)
         ambiguous = elsewhere > config.ambiguous
         if ambiguous:
-            likely = min(likely, config.back)
+            likely = min(likely, config.unsure)
         least = config.hidden if self._state is State.TRACKING else config.back
         returned = self.unseen > 0
         if not occluded and likely >= least:
@@ -205,7 +209,7 @@ class Confidence:
         near = moved < config.stay_within and relative > config.stay_above
         follow = near and not occluded and not lost
         self.unseen = 0 if follow else self.unseen + 1
-        published = 0.0 if lost else min(likely, config.back)
+        published = 0.0 if lost else min(likely, config.unsure)
         return Decision(follow, returned, 0.0, published, self._state)
 
     def _weight(self, likely: float) -> float:

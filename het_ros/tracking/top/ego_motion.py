@@ -73,7 +73,7 @@ class EgoMotion:
 
 
 def thumbnail(image: Image) -> Image:
-    """A gray miniature (h, w) uint8 whose longer side is 128 px, or the image's if it has less.
+    """A small gray image (h, w) uint8 whose longer side is 128 px, or the image's if it has less.
 
     Of large images only every k-th px is read, so that it costs the same for all. What is left is
     halved first, which OpenCV does many times faster than shrinking by any other ratio.

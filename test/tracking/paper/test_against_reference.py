@@ -21,7 +21,7 @@ DT = 1 / 30
 
 def small_config(seed):
     """The paper's, but for what makes the reference take minutes."""
-    return PaperConfig(seed=seed, features=30, sub_patches=5, search_radius=9.0)
+    return PaperConfig(seed=seed, features=12, sub_patches=4, search_radius=9.0)
 
 
 def reference_tracker(config, image, box):
@@ -92,7 +92,7 @@ def assert_same_track(images, box, config, seen):
 
 @pytest.mark.parametrize(
     ("name", "start", "seed"),
-    [("Crossing", 0, 0), ("Crossing", 60, 1), ("David", 0, 2), ("Woman", 0, 3)],
+    [("Crossing", 60, 1), ("David", 0, 2)],
 )
 def test_real_frames(sequence, seen, name, start, seed):
     frames = sequence(name)
@@ -116,13 +116,12 @@ def test_gray_frames(sequence, seen):
     ],
     ids=str,
 )
-@pytest.mark.parametrize("seed", [0, 1])
-def test_moving_noise(noise, seen, box, seed):
+def test_moving_noise(noise, seen, box):
     images = [np.roll(noise, (2 * i, 3 * i), axis=(0, 1)) for i in range(3)]
-    assert_same_track(images, box, small_config(seed), seen)
+    assert_same_track(images, box, small_config(0), seen)
 
 
-def test_with_all_of_the_papers_constants(sequence, seen):
+def test_with_the_papers_constants_but_fewer_features(sequence, seen):
     frames = sequence("Crossing")
     images = [frames.image(i) for i in range(2)]
-    assert_same_track(images, frames.boxes[0], PaperConfig(), seen)
+    assert_same_track(images, frames.boxes[0], PaperConfig(features=15), seen)

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from het_ros import State
+from het_ros.tracking.middle.fusion import Agreement
 from het_ros.tracking.top.confidence import Confidence, ConfidenceConfig, Features, probability
 
 TRACKING, COASTING, LOST = State.TRACKING, State.COASTING, State.LOST
@@ -33,8 +34,8 @@ def settled(lost_after=2.0):
 
 
 def features(**changed):
-    usual = {"usual": 0.9, "relative": 1.0}
-    return Features(**{**SURE, **usual, **changed})
+    seen = {**SURE, "usual": 0.9, "relative": 1.0, **changed}
+    return Features(**{name: seen[name] for name in Features.__dataclass_fields__})
 
 
 def likely(low, high):
@@ -44,8 +45,7 @@ def likely(low, high):
         found = judged(confidence, score=score, colour=0.7 * score / 0.9)
         if low <= probability(confidence.features) < high:
             return {"score": score, "colour": 0.7 * score / 0.9}, found
-    pytest.skip(f"no score gives a probability in [{low}, {high})")
-    return None
+    raise AssertionError(f"no score gives a probability in [{low}, {high})")
 
 
 def test_probability_is_between_nothing_and_certainty():
@@ -68,8 +68,8 @@ def test_any_number_gives_a_probability(name, value):
 
 
 def test_beyond_their_ranges_features_say_no_more():
-    inside = Features(1.2, 0.9, 1.3, 1.3, 1.5, 1.0, 0.2)
-    beyond = Features(9.0, 0.9, 9.0, 9.0, 9.0, 9.0, 0.2)
+    inside = Features(0.9, 1.3, 1.3, 1.5, 1.0, 0.2)
+    beyond = Features(0.9, 9.0, 9.0, 9.0, 9.0, 0.2)
     below = Features(*(-x for x in astuple(inside)))
     assert beyond.clipped() == inside.clipped() == astuple(inside)
     assert set(below.clipped()) == {0.0}
@@ -96,6 +96,26 @@ def test_features_compare_with_what_was_usual():
         usual += CONFIG.average_rate * (SURE["score"] - usual)
     judged(confidence, 5, **GONE)
     assert confidence.features.usual == pytest.approx(usual)
+
+
+def test_the_longer_unseen_the_less_a_distance_says():
+    """A distance counts over one more than the frames since the target was recognised."""
+    confidence = settled()
+    for unseen in range(4):
+        judged(confidence, **GONE)
+        assert confidence.features.moved == pytest.approx(GONE["moved"] / (1 + unseen))
+    assert judged(confidence).returned
+    judged(confidence, **GONE)
+    assert confidence.features.moved == pytest.approx(GONE["moved"])
+
+
+def test_what_a_network_says_counts():
+    """Its score speaks for a place, and its own place far away against it."""
+    shown = features(relative=0.5, colour=0.5)
+    sure, unsure = (probability(shown, Agreement(score, 0.1)) for score in (0.95, 0.05))
+    far = probability(shown, Agreement(0.95, 1.0))
+    assert unsure < sure
+    assert far < sure
 
 
 @pytest.mark.parametrize(
@@ -168,8 +188,8 @@ def test_what_is_occluded_coasts_whatever_it_looks_like():
     ("changed", "follow"),
     [
         ({"score": 0.4, "moved": 0.2, "spread": 2.0}, True),  # it may only have changed
-        ({"score": 0.4, "moved": 1.6}, False),  # too far from the prediction
-        ({"score": 0.2, "moved": 0.2}, False),  # nothing like it is there
+        ({"score": 0.4, "moved": 1.6, "spread": 2.0}, False),  # too far from the prediction
+        ({"score": 0.2, "moved": 0.2, "spread": 2.0}, False),  # nothing like it is there
     ],
 )
 def test_the_box_stays_on_what_may_be_the_target(changed, follow):

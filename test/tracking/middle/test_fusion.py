@@ -1,0 +1,161 @@
+# Copyright 2026 het_ros maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""Agreement, disagreement and size, as tables; and in the tracker, with a network that is made."""
+
+import dataclasses
+import math
+
+import numpy as np
+import pytest
+
+from het_ros import Box, HierarchicalEnsembleTracker, TrackerConfig
+from het_ros.tracking import target
+from het_ros.tracking.bottom.network import Proposal
+from het_ros.tracking.fitted import FITTED
+from het_ros.tracking.middle.fusion import (
+    Disagreement,
+    FusionConfig,
+    followed_size,
+    fused_place,
+    network_is_right,
+)
+
+CONFIG = FusionConfig()
+# Two places 40 px apart, of which the prediction is in the middle.
+TWO = Disagreement(0.9, 0.1, -0.2, 0.8, (120.0, 50.0), (80.0, 50.0), (100.0, 50.0), 20.0)
+SCORE = np.zeros((1, 1), np.float32)
+SIZE = np.array([20.0, 30.0])
+
+
+def test_a_common_place_is_nearer_to_the_networks():
+    ours, theirs = np.array([10.0, 20.0]), np.array([20.0, 10.0])
+    np.testing.assert_allclose(fused_place(ours, theirs), [16, 14])
+    np.testing.assert_allclose(fused_place(ours, ours), ours)
+
+
+@pytest.mark.parametrize(
+    ("changed", "evidence"),
+    [
+        ({}, (0.8, -0.25, 0.0)),
+        ({"score_ours": 0.9}, (0.0, -0.25, 0.0)),
+        ({"votes": 0.0}, (0.8, 0.0, 0.0)),
+        ({"usual": 0.4}, (0.8, -0.5, 0.0)),
+        ({"ours": (100.0, 50.0)}, (0.8, -0.25, 1.0)),
+        ({"theirs": (100.0, 40.0)}, (0.8, -0.25, -0.5)),
+        ({"theirs": (400.0, 50.0)}, (0.8, -0.25, 0.5)),  # no worse than 1.5 sides away
+    ],
+)
+def test_evidence_is_what_one_place_has_more_than_the_other(changed, evidence):
+    found = dataclasses.replace(TWO, **changed).evidence(1.5)
+    np.testing.assert_allclose(found, evidence, atol=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("changed", "right"),
+    [
+        ({}, True),
+        ({"score_ours": 0.9}, False),  # it says as much of the other place
+        ({"votes": -2.0}, False),  # the ensembles see nothing there
+        ({"score_ours": 0.6}, True),
+        ({"score_ours": 0.6, "ours": (100.0, 50.0)}, False),  # where it was expected
+    ],
+)
+def test_the_likelier_of_two_places_is_chosen(changed, right):
+    config = FusionConfig(by_score=4.0, by_votes=2.0, by_distance=-1.0, bias=-0.4)
+    assert network_is_right(dataclasses.replace(TWO, **changed), config) is right
+
+
+def test_the_fitted_weights_follow_a_sure_network_and_no_other():
+    assert network_is_right(TWO, CONFIG)
+    assert not network_is_right(dataclasses.replace(TWO, score_theirs=0.1, score_ours=0.9), CONFIG)
+    assert not network_is_right(dataclasses.replace(TWO, votes=-3.0), CONFIG)
+
+
+def test_a_calibration_gives_the_weights():
+    fitted = dataclasses.replace(FITTED, network_is_right=(1.0, 2.0, 3.0, 4.0))
+    config = FusionConfig.of(fitted)
+    assert (config.by_score, config.by_votes, config.by_distance, config.bias) == (1, 2, 3, 4)
+    assert FusionConfig.of(FITTED) == CONFIG
+
+
+def proposal(size, score=1.0, steady=1.0, centre=(100.0, 50.0)):
+    box = Box.from_centre(*centre, *size)
+    return Proposal(box, score, steady, np.full_like(SCORE, score), np.array([[centre]]))
+
+
+@pytest.mark.parametrize(
+    ("ratio", "score", "steady", "taken"),
+    [
+        ((1.0, 1.0), 1.0, 1.0, (0.0, 0.0)),
+        ((1.2, 1.2), 0.0, 1.0, (0.0, 0.0)),
+        ((1.2, 1.2), 1.0, 1.0, (0.4, 0.4)),  # the area
+        ((0.8, 0.8), 1.0, 1.0, (0.4, 0.4)),
+        ((1.2, 1 / 1.2), 1.0, 1.0, (0.2, 0.2)),  # the aspect, more slowly
+        ((1.2, 1.2), 0.5, 0.8, (0.16, 0.16)),  # by score and steadiness
+        ((1.2, 1.0), 1.0, 1.0, (0.3, None)),  # both: half area, half aspect
+    ],
+)
+def test_the_size_follows_a_part_of_the_way(ratio, score, steady, taken):
+    found = followed_size(SIZE, proposal(SIZE * ratio, score, steady))
+    for side, times, part in zip(found / SIZE, ratio, taken, strict=True):
+        if part is not None:
+            assert math.log(side) == pytest.approx(part * math.log(times), abs=1e-12)
+
+
+def test_the_size_arrives_where_the_network_stays():
+    size, wanted = SIZE, np.array([35.0, 28.0])
+    for _ in range(80):
+        size = followed_size(size, proposal(wanted))
+    np.testing.assert_allclose(size, wanted, rtol=1e-3)
+
+
+class MadeNetwork:
+    """Proposes what it was told."""
+
+    said = proposal(SIZE)
+
+    def __init__(self, folder):
+        pass
+
+    def start(self, image, box):
+        pass
+
+    def propose(self, look, at):
+        return self.said
+
+
+@pytest.fixture
+def started(noise, monkeypatch):
+    """A tracker with a made network on a target that stands still at (70, 55)."""
+    monkeypatch.setattr(target, "NetworkEnsemble", MadeNetwork)
+    tracker = HierarchicalEnsembleTracker(TrackerConfig(network="made"))
+    tracker.init(noise, Box.from_centre(70, 55, *SIZE))
+    return tracker
+
+
+@pytest.mark.parametrize(
+    ("centre", "score", "goes", "differ"),
+    [
+        ((74.0, 55.0), 0.9, (72.4, 55.0), False),  # they agree: 0.6 of the way
+        ((40.0, 85.0), 0.05, (70.0, 55.0), True),  # it is unsure
+        ((90.0, 55.0), 1.0, (90.0, 55.0), True),  # it is sure, and sees nothing at the other
+    ],
+)
+def test_the_tracker_goes_where_both_say_or_the_likelier(
+    started, noise, monkeypatch, centre, score, goes, differ
+):
+    monkeypatch.setattr(MadeNetwork, "said", proposal(SIZE, score, centre=centre))
+    by_its_score = dataclasses.replace(FITTED, network_is_right=(9.0, 0.0, 0.0, -1.0))
+    started.target._fusion = FusionConfig.of(by_its_score)
+    started.update(noise, 1 / 30)
+    assert (started.target.disagreement is not None) is differ
+    np.testing.assert_allclose(started.target.judged.centre, goes, atol=0.6)
+    agreement = started.target.confidence.agreement
+    assert agreement.network_score == pytest.approx(score if goes == centre or not differ else 0)
+    assert 0 <= agreement.apart <= 1
+
+
+def test_the_trackers_size_follows_the_networks(started, noise, monkeypatch):
+    monkeypatch.setattr(MadeNetwork, "said", proposal(1.1 * SIZE, centre=(70.0, 55.0)))
+    box = started.update(noise, 1 / 30).box
+    assert 1.02 < math.sqrt(box.area / SIZE.prod()) < 1.06
