@@ -86,7 +86,8 @@ class ConfidenceConfig:
             regression is learnt from too few frames to judge).
         stay_within: distance from the prediction up to which the box stays on the best place,
             target sides (chosen: a search window is hardly wider).
-        stay_above: relative score below which nothing like the target is there (measured on
+        stay_above: relative score below which nothing like the target is there, and the
+            probability falls to 0 with it (measured on
             sequences of development and others: a quarter).
         average_rate: rate of the averages (chosen: 20 frames).
     """
@@ -188,14 +189,19 @@ class Confidence:
         self.features = found
         self.agreement = agreement
         likely = probability(found, agreement, self._calibration)
-        if self._frames <= config.new:
+        # The regression knows hardly any frame with nothing there: it must not extrapolate.
+        nothing = agreement is None and relative <= config.stay_above
+        if nothing:
+            likely *= max(relative, 0.0) / config.stay_above
+        young = self._frames <= config.new
+        if young:
             likely = max(likely, config.unsure)
         ambiguous = elsewhere > config.ambiguous
         if ambiguous:
             likely = min(likely, config.unsure)
         least = config.hidden if self._state is State.TRACKING else config.back
         returned = self.unseen > 0
-        if not occluded and likely >= least:
+        if not occluded and likely >= least and (young or not nothing):
             self.unseen, self._unrecognised = 0, 0
             self._hidden_for, self._state = 0.0, State.TRACKING
             weight = 0.0 if ambiguous else self._weight(likely)
