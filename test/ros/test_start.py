@@ -25,7 +25,7 @@ main([])
 """
 
 
-@pytest.mark.parametrize("name", ["cv2.", "het_ros.ros.tracker_node", "filterpy"])
+@pytest.mark.parametrize("name", ["cv2.", "het_ros.ros.tracker_node"])
 def test_ctrl_c_while_it_still_imports_ends_the_tracker(name):
     ended = subprocess.run(
         [sys.executable, "-c", CTRL_C_IN_THE_IMPORT_OF.format(name=name)],

@@ -161,7 +161,14 @@ def test_in_lost_there_is_nothing_but_status(hand, made_footage):
         assert values["state"] == "LOST"
         assert "no image for" in values["reason"]
         assert float(values["score"]) == 0
-    assert set(hand.box((34, 43, 20, 32))) == {"box", "pose", "velocity", "status", "score"}
+    assert set(hand.box((34, 43, 20, 32))) == {
+        "box",
+        "pose",
+        "velocity",
+        "velocity_in_scene",
+        "status",
+        "score",
+    }
 
 
 def test_a_target_that_goes_for_good_is_lost_and_silent(hand, made_footage):
