@@ -49,7 +49,9 @@ class Recordings:
             bag.__enter__()
         except OSError as error:
             return Answer(False, str(error))
-        recorder = Recorder(self._node, bag, tracker, lambda error: self._end(tracker, error))
+        recorder = Recorder(
+            self._node, bag, tracker, on_failure=lambda error: self._end(tracker, error)
+        )
         self._open[tracker] = (bag, recorder)
         return Answer(True, f"recording to {bag.path}")
 
