@@ -17,8 +17,10 @@ BUILT := install/.built
 SOURCES := $(shell find het_ros config launch resource -type f -not -name '*.pyc' 2>/dev/null)
 
 # The order matters: the venv's Python, then its ROS packages, then this workspace over them.
-# A sourced ROS from apt would mix two Pythons' packages, so its variables are left outside.
-CLEAN := unset PYTHONPATH PYTHONHOME LD_LIBRARY_PATH COLCON_PREFIX_PATH ROS_DISTRO
+# A sourced ROS from apt would mix two Pythons' packages, so its variables are left outside; and
+# so is the mark of ROS's wheels that LD_LIBRARY_PATH has been set, since it is set anew.
+CLEAN := unset PYTHONPATH PYTHONHOME LD_LIBRARY_PATH COLCON_PREFIX_PATH ROS_DISTRO \
+	_ROS_WHEELS_BOOTSTRAP_COMPLETE
 ROS := $(CLEAN); source $(VENV)/bin/activate; export AMENT_PREFIX_PATH="$$VIRTUAL_ENV"
 WORKSPACE := $(ROS); source install/setup.bash
 PEERS_SPACE := $(CLEAN); source $(PEERS)/bin/activate; export AMENT_PREFIX_PATH="$$VIRTUAL_ENV"; \

@@ -17,8 +17,9 @@ from het_ros.commands import COMMANDS, PACKAGES, install_line
 
 ROOT = Path(__file__).parents[1]
 DECLARED = {e.text for e in ElementTree.parse(ROOT / "package.xml").iter("exec_depend")}
-# No key in rosdep: asked for when they are missed. BLAS's threads are limited where it is there.
-WITHOUT_KEY = {"rosbags", "av", "threadpoolctl", "distributed"}
+# No key in rosdep: asked for when they are missed. BLAS's threads are limited, and the operator's
+# address is drawn as a QR code, where theirs is there.
+WITHOUT_KEY = {"rosbags", "av", "threadpoolctl", "distributed", "segno"}
 WITHOUT = """
 import sys
 

@@ -7,6 +7,7 @@ from __future__ import annotations
 import asyncio
 import json
 import random
+from concurrent.futures import ThreadPoolExecutor
 
 import aiohttp
 import pytest
@@ -19,7 +20,9 @@ VIEW = {"type": "view", "tracker": "/tracker", "width": 640, "quality": 70}
 
 
 def run(work):
-    return asyncio.run(asyncio.wait_for(work, 120))
+    """What a coroutine returns; in a thread, since Playwright keeps a loop running in this one."""
+    with ThreadPoolExecutor(1) as thread:
+        return thread.submit(asyncio.run, asyncio.wait_for(work, 120)).result()
 
 
 async def status_of(server, token: str = "", **headers) -> int:

@@ -22,16 +22,15 @@ FOUND = {command: page for page in reversed(PAGES) for command in commands(page)
 
 CI = "CI runs it"
 SLOW = "run by `make faults`, takes minutes"
-APT = "needs ROS from apt"
+APT = "needs packages from apt"
 ROBOT = "needs a robot"
-RUN_ELSEWHERE = "test/tools/test_run.py runs its module on a bag, a video and a sequence"
 FOREVER = "does not end by itself; test/operator starts the same"
 # The first pattern that matches a command says why it is not run here.
 NOT_RUN = {
     r"make test$": CI,
-    r"make run": RUN_ELSEWHERE,
     r"make operator|ros2 run het_ros operator": FOREVER,
     r"ros2 run het_ros closed_loop": SLOW,
+    r"make run VIDEO=/usr": APT,
     r"cd |rosdep |colcon |python3 -m pip |sudo apt ": APT,
     r"ros2 (topic|launch|action) |rviz2 ": APT,
     r"ros2 run het_ros (tracker|follower_example)": ROBOT,
