@@ -1,9 +1,7 @@
 # Copyright 2026 het_ros maintainers
 # SPDX-License-Identifier: Apache-2.0
-import os
 import pickle
 import shutil
-from pathlib import Path
 
 import cv2
 import numpy as np
@@ -17,16 +15,6 @@ from het_ros.evaluation.network_peers import NAMES
 from het_ros.evaluation.protocols import follow
 from het_ros.evaluation.readers import read_sequences
 from het_ros.evaluation.trackers import tracker_spec
-
-from .conftest import DATA
-
-
-@pytest.fixture(scope="module")
-def models():
-    folder = Path(os.environ.get("HET_MODELS", DATA.parent / "models"))
-    if not folder.is_dir():
-        pytest.skip(f"no networks at {folder}: set HET_MODELS to their folder")
-    return folder
 
 
 def test_files_are_recognised(models):

@@ -115,7 +115,10 @@ def _net(file: Path) -> Any:
     try:
         return cv2.dnn.readNet(str(file))
     except cv2.error as error:
-        raise ValueError(f"{file} cannot be read as an ONNX network") from error
+        raise ValueError(
+            f"{file} cannot be read as an ONNX network by OpenCV {cv2.__version__}; "
+            "NanoTrack needs 4.7 or newer"
+        ) from error
 
 
 def crop_side(w: float, h: float) -> float:

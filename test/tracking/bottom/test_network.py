@@ -3,7 +3,6 @@
 """What is made of a network's maps: against slow loops, and with real files on real frames."""
 
 import math
-import os
 from pathlib import Path
 
 import numpy as np
@@ -16,8 +15,6 @@ from het_ros.tracking.bottom.siamese import placed
 
 from .looks import look_at
 
-ROOT = Path(__file__).parents[3]
-MODELS = Path(os.environ.get("HET_MODELS", ROOT.parent / "shared" / "models"))
 CONFIG = NetworkConfig()
 IMAGE = np.zeros((120, 160, 3), np.uint8)
 FIRST = Box(60, 40, 20, 30)
@@ -192,10 +189,8 @@ def test_a_folder_without_a_network_is_refused(tmp_path):
 
 
 @pytest.fixture(scope="module")
-def real():
-    if not (MODELS / "nanotrackv3").is_dir():
-        pytest.skip(f"no networks at {MODELS}: set HET_MODELS to their folder")
-    return NetworkEnsemble(MODELS / "nanotrackv3")
+def real(models):
+    return NetworkEnsemble(models / "nanotrackv3")
 
 
 @pytest.mark.parametrize("name", ["Crossing", "David", "Car1"])

@@ -1,9 +1,6 @@
 # Copyright 2026 het_ros maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""Crop, forward pass and decoding; the networks themselves are read from $HET_MODELS."""
-
-import os
-from pathlib import Path
+"""Crop, forward pass and decoding; the networks themselves where they are."""
 
 import cv2
 import numpy as np
@@ -13,16 +10,11 @@ from het_ros import Box
 from het_ros.tracking.bottom import siamese
 from het_ros.tracking.bottom.siamese import STRIDE, Siamese
 
-ROOT = Path(__file__).parents[3]
-MODELS = Path(os.environ.get("HET_MODELS", ROOT.parent / "shared" / "models"))
-
 
 @pytest.fixture(scope="module", params=[("nanotrackv2", 16), ("nanotrackv3", 15)])
-def network(request):
+def network(models, request):
     folder, places = request.param
-    if not (MODELS / folder).is_dir():
-        pytest.skip(f"no networks at {MODELS}: set HET_MODELS to their folder")
-    return Siamese.read(MODELS / folder), places
+    return Siamese.read(models / folder), places
 
 
 def test_a_crop_of_its_own_size_is_the_image():
