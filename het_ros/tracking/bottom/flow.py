@@ -154,10 +154,10 @@ class FlowEnsemble:
             return None
         end = window.to_image(there.astype(np.float64) + 0.5)
         way = end - start
-        good &= np.hypot(*(way - np.median(way[good], axis=0)).T) < config.together * side
+        good &= np.hypot(*(way - _median(way[good])).T) < config.together * side
         if good.sum() < config.fewest:
             return None
-        shift = np.median(way[good], axis=0)
+        shift = _median(way[good])
         growth, deviation = _growth(start[good] - centre, end[good], side)
         return Flow(shift, centre + shift, float(good.mean()), growth, deviation)
 
@@ -181,6 +181,11 @@ class FlowEnsemble:
         return np.asarray(moved, np.float32)[:, 0], np.asarray(status)[:, 0] > 0
 
 
+def _median(values: Floats) -> Floats:
+    """Upper median of (P,) or (P, 2) over P; a fifth of the time of NumPy's for so few."""
+    return np.asarray(np.sort(values, axis=0)[len(values) // 2])
+
+
 def _growth(start: Floats, end: Floats, side: float) -> tuple[float, float]:
     """Logarithm of the slope of end on start (P, 2), and one point's deviation of it.
 
@@ -198,6 +203,6 @@ def _growth(start: Floats, end: Floats, side: float) -> tuple[float, float]:
         residual = v - slope * u
         left = float((weight * residual**2).sum() / total)
         distance = np.hypot(*residual.T)
-        scale = 1.5 * float(np.median(distance)) + 1e-3 * side
+        scale = 1.5 * float(_median(distance)) + 1e-3 * side
         weight = (1 / (1 + (distance / scale) ** 2))[:, None]
     return math.log(min(max(slope, 0.5), 2.0)), math.sqrt(left / spread)

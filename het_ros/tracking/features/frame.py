@@ -6,6 +6,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import TypeVar
 
 import numpy as np
@@ -27,13 +28,11 @@ class Frame:
     Attributes:
         window: the pixels, with its places counted in cells.
         channels: C planes (H, W) uint8, one value a cell.
-        stack: (H, C, W) float32, the same row by row.
         features: (m, rows, columns), the features of a sub-patch with its corner in each cell.
     """
 
     window: Window
     channels: tuple[Pixels, ...]
-    stack: NDArray[np.float32]
     features: FeatureMaps
 
     @classmethod
@@ -45,8 +44,12 @@ class Frame:
         """
         pixels = _sealed(window.pixels)
         planes = tuple(_sealed(channel) for channel in channels)
-        stack = _sealed(stacked(planes))
-        return cls(replace(window, pixels=pixels), planes, stack, _sealed(features))
+        return cls(replace(window, pixels=pixels), planes, _sealed(features))
+
+    @cached_property
+    def stack(self) -> NDArray[np.float32]:
+        """(H, C, W) float32, the channels row by row; made when first asked for."""
+        return _sealed(stacked(self.channels))
 
 
 def stacked(channels: Sequence[Pixels]) -> NDArray[np.float32]:
