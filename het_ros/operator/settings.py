@@ -18,12 +18,8 @@ RING = "ring_seconds"
 WORTH_IT = (
     "lost_after",
     "max_gap",
-    "hidden",
-    "return_probability",
     "search_radius",
     "growth_limit",
-    "camera_motion",
-    "rotation",
     "seed",
     "white_level",
     RING,

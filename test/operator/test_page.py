@@ -105,6 +105,7 @@ def test_a_running_track_is_replaced_only_when_asked_for(server, page):
     page.drag((100, 100), (150, 200))
     page.page.get_by_role("button", name="Keep the running one").click()
     assert len(picks(server)) == 1
+    wait(lambda: not page.get("operatorPage.pick.sending"), "the end of the question")
     page.keys("Enter")
     page.page.get_by_role("button", name="Replace", exact=True).click()
     wait(lambda: len(picks(server)) == 2, "the second pick")
