@@ -89,6 +89,8 @@ class Recordings:
 
     def _end(self, tracker: str, why: str) -> None:
         """End a recording that nobody ended; what was recorded is kept."""
+        if tracker not in self._open:
+            return  # another message of a full disk
         try:
             why = f"{self.stop(tracker)}: {why}"
         except OSError as error:
