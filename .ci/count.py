@@ -1,23 +1,26 @@
 # Copyright 2026 het_ros maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""Counts what the tracker may grow to: lines, public parameters, constants without a home."""
+"""Counts what may not grow: lines, parameters and constants of the tracker, lines of the page."""
 
 from __future__ import annotations
 
 import argparse
 import ast
+import re
 import tokenize
 from collections.abc import Iterator
 from pathlib import Path
 
 PACKAGE = Path(__file__).parents[1] / "het_ros" / "tracking"
+OPERATOR = PACKAGE.parent / "operator"
+COMMAND = {"main.py", "config.py", "demo.py"}  # command line, its settings, a camera of footage
 CONFIGURATIONS = {"default": "config.py", "paper": "paper/config.py"}
 
 
 def main(arguments: list[str] | None = None) -> int:
     """Print the counts; returns 0."""
     parser = argparse.ArgumentParser(
-        description="Count lines, public parameters and module constants of the tracker.",
+        description="Count lines, parameters and constants of the tracker, lines of the page.",
         epilog="example: python .ci/count.py",
     )
     parser.add_argument("package", type=Path, nargs="?", default=PACKAGE, help="the folder")
@@ -35,6 +38,11 @@ def main(arguments: list[str] | None = None) -> int:
         for line, name in constants(ast.parse(file.read_text()))
     ]
     print(f"module constants outside a frozen dataclass: {len(found)}", *found, sep="\n  ")
+    parts = {file.name: code_lines(file) for file in OPERATOR.glob("*.py")}
+    command = sum(lines for name, lines in parts.items() if name in COMMAND)
+    page = sum(page_lines(file) for kind in ("js", "css") for file in OPERATOR.rglob(f"*.{kind}"))
+    print(f"operator, code: server and bridge {sum(parts.values()) - command},", end=" ")
+    print(f"command and demo {command}, page {page}")
     return 0
 
 
@@ -42,7 +50,7 @@ def code_lines(file: Path) -> int:
     """Lines of a file that are neither empty nor comment nor docstring."""
     texts: set[int] = set()
     for node in ast.walk(ast.parse(file.read_text())):
-        documented = (ast.Module, ast.ClassDef, ast.FunctionDef)
+        documented = (ast.Module, ast.ClassDef, ast.FunctionDef, ast.AsyncFunctionDef)
         if isinstance(node, documented) and ast.get_docstring(node) is not None:
             texts.update(range(node.body[0].lineno, (node.body[0].end_lineno or 0) + 1))
     layout = {tokenize.COMMENT, tokenize.NL, tokenize.NEWLINE, tokenize.INDENT}
@@ -53,6 +61,13 @@ def code_lines(file: Path) -> int:
             if token.type not in layout:
                 code.update(range(token.start[0], token.end[0] + 1))
     return len(code - texts)
+
+
+def page_lines(file: Path) -> int:
+    """Lines of JavaScript or CSS that are neither empty nor comment."""
+    text = re.sub(r"/\*.*?\*/", "", file.read_text(), flags=re.DOTALL)
+    lines = map(str.strip, text.splitlines())
+    return sum(bool(line) and not line.startswith("//") for line in lines)
 
 
 def parameters(module: ast.Module) -> int:

@@ -91,6 +91,8 @@ def test_names_carry_a_prefix_on_the_path_of_a_pip_user(monkeypatch, words, pref
         ("tqdm", "make_bag", "sudo apt install python3-tqdm"),
         ("joblib", "evaluate", "sudo apt install python3-joblib"),
         ("cv2", "tracker", "sudo apt install python3-opencv"),
+        ("aiohttp", "operator", "sudo apt install python3-aiohttp"),
+        ("jsonschema", "operator", "sudo apt install python3-jsonschema"),
     ],
 )
 def test_a_missing_package_is_one_line_with_the_command_that_installs_it(missing, command, way):
@@ -108,6 +110,12 @@ def test_the_node_imports_nothing_of_the_tools():
     for module in ("het_ros.ros.tracker_node", "het_ros.ros.follower_example"):
         ended = without(tools, "tracker", f"import {module}")
         assert ended.returncode == 0, ended.stderr
+
+
+def test_without_the_operator_s_packages_all_else_runs():
+    others = sorted({module for name, module in COMMANDS.items() if name != "operator"})
+    ended = without(["aiohttp", "jsonschema", "segno"], "tracker", f"import {', '.join(others)}")
+    assert ended.returncode == 0, ended.stderr
 
 
 def test_package_xml_declares_what_rosdep_has():

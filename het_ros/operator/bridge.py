@@ -5,11 +5,11 @@
 from __future__ import annotations
 
 import asyncio
-from collections.abc import Callable
+import time
+from collections.abc import Awaitable, Callable
+from functools import wraps
 from typing import Any, Protocol
 
-from geometry_msgs.msg import PolygonStamped
-from rcl_interfaces.msg import Log
 from rclpy.node import Node
 from std_srvs.srv import SetBool, Trigger
 
@@ -20,12 +20,9 @@ from het_ros.operator.pictures import Picture
 from het_ros.operator.recordings import Recordings
 from het_ros.operator.ros_thread import RosThread
 from het_ros.operator.settings import LiveSettings
-from het_ros.operator.watch import RELIABLE, WITH_BOX, Watch
-from het_ros.ros.messages import header_of, polygon_from_box
+from het_ros.operator.watch import Watch
 from het_ros.tracking.box import Box
 
-WARN = 30  # level of rcl_interfaces/Log
-LONGEST_LINE = 1000  # letters
 LATEST = 2**31 * 10**9  # ns: stamps end there
 RESTORE = 3.0  # s after a pick, in which the tracker takes the box before it forgets old images
 
@@ -38,6 +35,21 @@ class Viewer(Protocol):
 
     def show(self, picture: Picture) -> None:
         """Take an image, at once."""
+
+
+def answered(work: Callable[..., Awaitable[str]]) -> Callable[..., Awaitable[Answer]]:
+    """Make an answer of what a request to a tracker returns, or of the reason that it raises."""
+
+    @wraps(work)
+    async def answer(bridge: Bridge, tracker: str, *fields: Any, **named: Any) -> Answer:
+        try:
+            if not await bridge.knows(tracker):
+                raise ValueError(f"there is no tracker {tracker}")
+            return Answer(True, await work(bridge, tracker, *fields, **named))
+        except (OSError, ValueError) as error:
+            return Answer(False, str(error))
+
+    return answer
 
 
 class Bridge:
@@ -56,10 +68,8 @@ class Bridge:
         self._config = config
         self._viewers: dict[Viewer, str] = {}
         self._picking: dict[Viewer, str] = {}
-        self._restoring: set[asyncio.Future[None]] = set()
+        self._keep_until: dict[str, float] = {}
         self._watches: dict[str, Watch] = {}
-        self._publishers: dict[str, Any] = {}
-        self._log: Any = None
         self._recordings = Recordings(node, config)
         self._ros = RosThread(node)
         self._settings = LiveSettings(self._ros)
@@ -81,62 +91,64 @@ class Bridge:
     def leave(self, viewer: Viewer) -> None:
         """Show a viewer nothing more."""
         self._viewers.pop(viewer, None)
-        self._stop_picking(viewer)
+        self._picking.pop(viewer, None)
         self._ros.later(self._match)
+
+    async def knows(self, tracker: str) -> bool:
+        """Whether a tracker is there, or was while it is looked at: names come from outside."""
+        return await self._ros.do(lambda: tracker in {*self._watches, *find_trackers(self._node)})
 
     async def freeze(self, viewer: Viewer, tracker: str, on: bool) -> None:
         """Let the tracker keep its images while a viewer draws a box on one of them."""
-        if not on:
-            self._stop_picking(viewer)
-        elif self._config.keep_seconds and tracker in self._watches:
-            first = tracker not in self._picking.values()
+        self._picking.pop(viewer, None)
+        if on and self._config.keep_seconds and tracker in self._watches:
             self._picking[viewer] = tracker
-            if first:
-                await self._settings.raise_ring(tracker, self._config.keep_seconds)
+            self._keep_until[tracker] = time.monotonic() + RESTORE
+            await self._settings.raise_ring(tracker, self._config.keep_seconds)
 
-    async def pick(self, tracker: str, box: list[float], stamp: str, replace: bool) -> Answer:
+    @answered
+    async def pick(self, tracker: str, box: list[float], stamp: str, replace: bool) -> str:
         """Start a track on the image of that stamp, ns; a running one is replaced on demand."""
-
-        def publish() -> Answer:
-            watch, publisher = self._watches.get(tracker), self._publishers.get(tracker)
-            if watch is None or publisher is None or not publisher.get_subscription_count():
-                return Answer(False, f"{tracker or 'no tracker'} takes no boxes now")
-            if watch.tracks.state in WITH_BOX and not replace:
-                return Answer(False, "a track is running: replace it?")
-            publisher.publish(polygon_from_box(Box(*map(float, box)), header_of(int(stamp))))
-            return Answer(True, "the box is sent")
-
         if int(stamp) >= LATEST:
-            return Answer(False, "no image has such a stamp")
-        return await self._ros.do(publish)
+            raise ValueError("no image has such a stamp")
+        if tracker not in self._watches:
+            raise ValueError(f"{tracker} is not looked at")
+        watch = self._watches[tracker]
+        await self._ros.do(lambda: watch.start(Box(*map(float, box)), int(stamp), replace))
+        return "the box is sent"
 
-    async def reset(self, tracker: str) -> Answer:
+    @answered
+    async def reset(self, tracker: str) -> str:
         """Let the tracker forget its target."""
-        return await self._ask(Trigger, tracker, "reset", Trigger.Request())
+        return await self._ask(Trigger, f"{tracker}/reset", Trigger.Request())
 
-    async def enable(self, tracker: str, on: bool) -> Answer:
+    @answered
+    async def enable(self, tracker: str, on: bool) -> str:
         """Let the tracker go on, or pause it."""
-        return await self._ask(SetBool, tracker, "enable", SetBool.Request(data=on))
+        return await self._ask(SetBool, f"{tracker}/enable", SetBool.Request(data=on))
 
-    async def record(self, tracker: str, on: bool) -> Answer:
+    @answered
+    async def record(self, tracker: str, on: bool) -> str:
         """Start or stop the recording of what a tracker publishes."""
-        if on and not await self._is_there(tracker):
-            return Answer(False, f"there is no tracker {tracker}")
-        recordings = self._recordings
-        work = recordings.start if on else recordings.stop
+        work = self._recordings.start if on else self._recordings.stop
         return await self._ros.do(lambda: work(tracker))
+
+    @answered
+    async def set(self, tracker: str, name: str, value: bool | float) -> str:
+        """Change one parameter."""
+        return await self._settings.write(tracker, name, value)
 
     async def parameters(self, tracker: str) -> dict[str, Any]:
         """The message with the parameters that can be changed while the tracker runs."""
-        there = await self._is_there(tracker)
-        found = await self._settings.read(tracker) if there else []
+        found = await self._settings.read(tracker) if await self.knows(tracker) else []
         return {"type": "parameters", "parameters": found}
 
-    async def set(self, tracker: str, name: str, value: bool | float) -> Answer:
-        """Change one parameter."""
-        if not await self._is_there(tracker):
-            return Answer(False, f"there is no tracker {tracker}")
-        return await self._settings.write(tracker, name, value)
+    async def _ask(self, kind: Any, name: str, request: Any) -> str:
+        """What a service says that answers with success and message; ValueError for no success."""
+        response = await self._ros.call(kind, name, request)
+        if not response.success:
+            raise ValueError(response.message)
+        return str(response.message)
 
     # In the node's thread -------------------------------------------------------------------
 
@@ -146,32 +158,12 @@ class Bridge:
         wanted = names & {*(find_trackers(self._node) if names else ()), *self._watches}
         for tracker in self._watches.keys() - wanted:
             self._watches.pop(tracker).close()
-            self._node.destroy_publisher(self._publishers.pop(tracker))
         for tracker in wanted - self._watches.keys():
             self._watches[tracker] = Watch(
                 self._node, tracker, self._teller(tracker, "tell"), self._teller(tracker, "show")
             )
-            self._publishers[tracker] = self._node.create_publisher(
-                PolygonStamped, f"{tracker}/init_box", RELIABLE
-            )
         for watch in self._watches.values():
             watch.find_camera()
-        if wanted and self._log is None:
-            self._log = self._node.create_subscription(Log, "/rosout", self._on_log, 100)
-        elif not wanted and self._log is not None:
-            self._node.destroy_subscription(self._log)
-            self._log = None
-
-    def _on_log(self, message: Log) -> None:
-        """What a tracker says, a refusal for example, as it is written."""
-        for tracker in self._watches:
-            if message.name == tracker.strip("/").replace("/", "."):
-                told = {
-                    "type": "log",
-                    "warning": message.level >= WARN,
-                    "text": message.msg[:1000],
-                }
-                self._teller(tracker, "tell")(told)
 
     def _teller(self, tracker: str, what: str) -> Callable[[Any], None]:
         """A function that hands things from the node's thread to a tracker's viewers."""
@@ -193,9 +185,9 @@ class Bridge:
     # In the loop's thread -------------------------------------------------------------------
 
     async def _tick(self) -> None:
-        """Tell viewers once a second what there is; look for it only while there are any."""
+        """Tell viewers once a second what there is; look for it only while somebody needs it."""
         while True:
-            if self._viewers or self._recordings.running:
+            if self._viewers or self._recordings.running or self._keep_until:
                 names, recordings, images = await self._ros.do(self._news)
                 for viewer, tracker in tuple(self._viewers.items()):
                     viewer.tell(
@@ -203,30 +195,14 @@ class Bridge:
                     )
                     if tracker in recordings:
                         viewer.tell(recordings[tracker])
+                await self._restore(names)
             await asyncio.sleep(1.0)
 
-    def _stop_picking(self, viewer: Viewer) -> None:
-        tracker = self._picking.pop(viewer, None)
-        if tracker is not None and tracker not in self._picking.values():
-            task = asyncio.ensure_future(self._restore(tracker))
-            self._restoring.add(task)
-            task.add_done_callback(self._restoring.discard)
-
-    async def _restore(self, tracker: str) -> None:
-        """Let the tracker keep as few images as before, unless somebody picks again."""
-        await asyncio.sleep(RESTORE)
-        if tracker not in self._picking.values():
-            await self._settings.restore_ring(tracker)
-
-    async def _is_there(self, tracker: str) -> bool:
-        return tracker in await self._ros.do(lambda: find_trackers(self._node))
-
-    async def _ask(self, kind: Any, tracker: str, verb: str, request: Any) -> Answer:
-        """Call a tracker's service that answers with success and message."""
-        if not await self._is_there(tracker):
-            return Answer(False, f"there is no tracker {tracker}")
-        try:
-            response = await self._ros.call(kind, f"{tracker}/{verb}", request)
-        except TimeoutError as error:
-            return Answer(False, str(error))
-        return Answer(response.success, response.message)
+    async def _restore(self, names: list[str]) -> None:
+        """Let trackers on which nobody draws any more keep as few images as before."""
+        now = time.monotonic()
+        self._keep_until |= dict.fromkeys(self._picking.values(), now + RESTORE)
+        for tracker, until in tuple(self._keep_until.items()):
+            if until < now:
+                del self._keep_until[tracker]
+                await self._settings.restore_ring(tracker, tracker in names)

@@ -23,7 +23,6 @@ ON_THE_WAY = 2  # images that a browser has not shown yet
 BURST, A_SECOND = 200, 100  # messages of one browser
 COMMAND = 10  # a command counts as so many messages
 MOST_COMMANDS = 4  # at once
-MOST_FAULTS = 20
 
 
 class Allowance:
@@ -58,7 +57,6 @@ class Client:
         self._allowance = Allowance()
         self._commands: set[asyncio.Future[None]] = set()
         self._knows_parameters = False
-        self._faults = 0
 
     def tell(self, message: dict[str, Any]) -> None:
         """Send a message, after those that wait."""
@@ -108,9 +106,8 @@ class Client:
         try:
             message = parse(text)
         except MessageError as error:
-            self._faults += 1
             self.tell(Answer(False, str(error)).message("unknown"))
-            return self._faults < MOST_FAULTS and self._allowance.take(COMMAND)
+            return self._allowance.take(COMMAND)
         kind = message.pop("type")
         if kind == "shown":
             self._on_the_way = max(self._on_the_way - 1, 0)

@@ -17,13 +17,10 @@ from rclpy.node import Node
 from rclpy.signals import SignalHandlerOptions
 from rclpy.utilities import remove_ros_args
 
+from het_ros.operator.bridge import Bridge
 from het_ros.operator.config import OperatorConfig
+from het_ros.operator.server import Server
 from het_ros.ros.parameters import declare, read
-
-NEEDS_AIOHTTP = (
-    "operator: the page needs aiohttp: sudo apt install python3-aiohttp, "
-    "or pip install 'het_ros[operator]'"
-)
 
 
 def main(args: list[str] | None = None) -> int:
@@ -34,11 +31,6 @@ def main(args: list[str] | None = None) -> int:
         description="Pick the target of a tracker, and watch it, in a browser.",
         epilog="example: ros2 run het_ros operator --ros-args -p host:=0.0.0.0",
     ).parse_args(remove_ros_args(argv)[1:])
-    try:
-        import aiohttp  # noqa: F401
-    except ImportError:
-        print(NEEDS_AIOHTTP, file=sys.stderr)
-        return 2
     rclpy.init(args=argv, signal_handler_options=SignalHandlerOptions.NO)
     node = None
     try:
@@ -64,9 +56,6 @@ async def serve(node: Node, config: OperatorConfig) -> None:
     Raises:
         OSError: the address cannot be listened on.
     """
-    from het_ros.operator.bridge import Bridge
-    from het_ros.operator.server import Server
-
     stop, loop = asyncio.Event(), asyncio.get_running_loop()
     for number in (signal.SIGINT, signal.SIGTERM):
         loop.add_signal_handler(number, stop.set)

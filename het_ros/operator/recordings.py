@@ -10,8 +10,8 @@ from typing import Any
 
 from rclpy.node import Node
 
+from het_ros.commands import install_line
 from het_ros.operator.config import OperatorConfig
-from het_ros.operator.messages import Answer
 
 
 class Recordings:
@@ -33,44 +33,48 @@ class Recordings:
         """Whether there is any."""
         return bool(self._open)
 
-    def start(self, tracker: str) -> Answer:
-        """Begin a recording of one tracker."""
+    def start(self, tracker: str) -> str:
+        """Begin a recording of one tracker; where to.
+
+        Raises:
+            ValueError: it is recorded already, or rosbags is not installed.
+            OSError: the folder cannot be written.
+        """
         if tracker in self._open:
-            return Answer(False, "a recording is running already")
+            raise ValueError("a recording is running already")
         try:
             from het_ros.tools.bag_writer import BagWriter
             from het_ros.tools.recorder import Recorder
-        except ImportError as error:
-            return Answer(False, f"recording needs rosbags: pip install rosbags ({error})")
+        except ModuleNotFoundError as error:
+            raise ValueError(f"recording {install_line('rosbags')}") from error
         name = f"{tracker.strip('/').replace('/', '_')}_{time.strftime('%Y%m%d_%H%M%S')}"
-        try:
-            self._folder.mkdir(parents=True, exist_ok=True)
-            bag = BagWriter(self._folder / name)
-            bag.__enter__()
-        except OSError as error:
-            return Answer(False, str(error))
+        self._folder.mkdir(parents=True, exist_ok=True)
+        bag = BagWriter(self._folder / name)
+        bag.__enter__()
         recorder = Recorder(
-            self._node, bag, tracker, on_failure=lambda error: self._end(tracker, error)
+            self._node, bag, tracker, on_failure=lambda error: self._end(tracker, str(error))
         )
         self._open[tracker] = (bag, recorder)
-        return Answer(True, f"recording to {bag.path}")
+        return f"recording to {bag.path}"
 
-    def stop(self, tracker: str) -> Answer:
-        """End the recording of one tracker."""
+    def stop(self, tracker: str) -> str:
+        """End the recording of one tracker; where it is.
+
+        Raises:
+            ValueError: there is none.
+            OSError: its end cannot be written.
+        """
         if tracker not in self._open:
-            return Answer(False, "no recording is running")
+            raise ValueError("no recording is running")
         bag, recorder = self._open.pop(tracker)
         recorder.close()
-        try:
-            bag.__exit__(None, None, None)
-        except OSError as error:
-            return Answer(False, str(error))
-        return Answer(True, f"recorded {bag.path}")
+        bag.__exit__(None, None, None)
+        return f"recorded {bag.path}"
 
     def stop_all(self) -> None:
         """End every recording."""
         for tracker in tuple(self._open):
-            self.stop(tracker)
+            self._end(tracker, "the operator ends")
 
     def state(self, tracker: str) -> dict[str, Any]:
         """The message that tells of a tracker's recording; one that is too large is ended."""
@@ -79,11 +83,16 @@ class Recordings:
             bag, recorder = self._open[tracker]
             path, size = str(bag.path), recorder.size
             if size > self._most:
-                self._node.get_logger().warning(f"{self.stop(tracker).text}: it is full")
+                self._end(tracker, "it is as large as max_recording")
         on = tracker in self._open
         return {"type": "recording", "on": on, "path": path, "bytes": size}
 
-    def _end(self, tracker: str, error: OSError) -> None:
-        """The disk is full: what was recorded is kept."""
-        self._node.get_logger().error(str(error))
-        self.stop(tracker)
+    def _end(self, tracker: str, why: str) -> None:
+        """End a recording that nobody ended; what was recorded is kept."""
+        if tracker not in self._open:
+            return  # another message of a full disk
+        try:
+            why = f"{self.stop(tracker)}: {why}"
+        except OSError as error:
+            why = f"{error}: {why}"
+        self._node.get_logger().warning(why)

@@ -4,29 +4,22 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
 from typing import Any
 
-from rcl_interfaces.msg import Parameter, ParameterDescriptor, ParameterType, ParameterValue
+from rcl_interfaces.msg import ParameterDescriptor, ParameterType
 from rcl_interfaces.srv import DescribeParameters, GetParameters, ListParameters, SetParameters
-from rclpy.parameter import Parameter as RclpyParameter
-from rclpy.parameter import parameter_value_to_python
+from rclpy.parameter import Parameter, parameter_value_to_python
 
-from het_ros.operator.messages import Answer
 from het_ros.operator.ros_thread import RosThread
 
-BOOL = ParameterType.PARAMETER_BOOL
-INTEGER, DOUBLE = ParameterType.PARAMETER_INTEGER, ParameterType.PARAMETER_DOUBLE
 RING = "ring_seconds"
 # Those that a tracker does not have are left out.
 WORTH_IT = (
     "lost_after",
     "max_gap",
-    "hidden",
-    "return_probability",
     "search_radius",
     "growth_limit",
-    "camera_motion",
-    "rotation",
     "seed",
     "white_level",
     RING,
@@ -57,32 +50,40 @@ class LiveSettings:
             if not descriptor.read_only
         ]
 
-    async def write(self, tracker: str, name: str, value: Any) -> Answer:
-        """Set one parameter that :meth:`read` gives; a refusal has the tracker's words."""
+    async def write(self, tracker: str, name: str, value: bool | float) -> str:
+        """Set one parameter that :meth:`read` gives.
+
+        Raises:
+            ValueError: it is none of them, or the tracker refuses, in the tracker's words.
+            TimeoutError: nobody answers.
+        """
         if name not in WORTH_IT:
-            return Answer(False, f"{name} is not changed from here")
-        try:
-            asked = GetParameters.Request(names=[name])
-            (before,) = (await self._of(tracker, GetParameters, "get", asked)).values
-            after = _like(before, value)
-            asked = SetParameters.Request(parameters=[Parameter(name=name, value=after)])
-            (result,) = (await self._of(tracker, SetParameters, "set", asked)).results
-        except (TimeoutError, ValueError) as error:
-            return Answer(False, str(error))
-        return Answer(result.successful, result.reason or f"{name} is {value}")
+            raise ValueError(f"{name} is not changed from here")
+        asked = GetParameters.Request(names=[name])
+        (before,) = (await self._of(tracker, GetParameters, "get", asked)).values
+        if before.type == ParameterType.PARAMETER_DOUBLE and not isinstance(value, bool):
+            value = float(value)  # JSON writes 3.0 as 3
+        parameter = Parameter(name, value=value).to_parameter_msg()
+        asked = SetParameters.Request(parameters=[parameter])
+        (result,) = (await self._of(tracker, SetParameters, "set", asked)).results
+        if not result.successful:
+            raise ValueError(result.reason)
+        return result.reason or f"{name} is {value}"
 
     async def raise_ring(self, tracker: str, seconds: float) -> None:
         """Let a tracker keep images for so long, if it keeps them for less."""
         known = {p["name"]: p["value"] for p in await self.read(tracker)}
         if RING in known and known[RING] < seconds:
             self._before.setdefault(tracker, known[RING])
-            await self.write(tracker, RING, seconds)
+            with suppress(OSError, ValueError):
+                await self.write(tracker, RING, seconds)
 
-    async def restore_ring(self, tracker: str) -> None:
-        """Set back what :meth:`raise_ring` raised."""
+    async def restore_ring(self, tracker: str, there: bool) -> None:
+        """Set back what :meth:`raise_ring` raised, if the tracker is still there."""
         before = self._before.pop(tracker, None)
-        if before is not None:
-            await self.write(tracker, RING, before)
+        if before is not None and there:
+            with suppress(OSError, ValueError):
+                await self.write(tracker, RING, before)
 
     async def _of(self, tracker: str, kind: Any, verb: str, request: Any) -> Any:
         return await self._ros.call(kind, f"{tracker}/{verb}_parameters", request)
@@ -98,19 +99,5 @@ def _described(descriptor: ParameterDescriptor, value: Any) -> dict[str, Any]:
         "help": descriptor.description,
         "low": low,
         "high": high,
-        "whole": descriptor.type == INTEGER,
+        "whole": descriptor.type == ParameterType.PARAMETER_INTEGER,
     }
-
-
-def _like(before: ParameterValue, value: bool | float) -> ParameterValue:
-    """A value of the type that the parameter has; raises ValueError where it does not fit."""
-    whole = isinstance(value, bool) or int(value) == value
-    if (before.type == BOOL) is not isinstance(value, bool) or (
-        before.type == INTEGER and not (whole and abs(value) < 2**63)
-    ):
-        raise ValueError(f"{value!r} is of another type than the parameter")
-    if before.type == DOUBLE:
-        value = float(value)
-    elif before.type == INTEGER:
-        value = int(value)
-    return RclpyParameter("", value=value).get_parameter_value()

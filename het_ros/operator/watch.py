@@ -9,6 +9,7 @@ from typing import Any
 
 from diagnostic_msgs.msg import DiagnosticArray
 from geometry_msgs.msg import PolygonStamped, TwistWithCovarianceStamped
+from rcl_interfaces.msg import Log
 from rclpy.node import Node
 from rclpy.qos import QoSProfile, ReliabilityPolicy
 from sensor_msgs.msg import CompressedImage, Image
@@ -17,11 +18,20 @@ from het_ros.operator.discovery import IMAGES, find_images
 from het_ros.operator.pictures import Picture
 from het_ros.ros.image_stream import NEWEST_ONLY
 from het_ros.ros.losses import Losses
-from het_ros.ros.messages import BoxError, box_from_polygon, stamp_ns
+from het_ros.ros.messages import (
+    BoxError,
+    box_from_polygon,
+    header_of,
+    polygon_from_box,
+    stamp_ns,
+)
 from het_ros.ros.status import status_values
+from het_ros.tracking.box import Box
 
 RELIABLE = QoSProfile(depth=10, reliability=ReliabilityPolicy.RELIABLE)
 WITH_BOX = ("TRACKING", "COASTING")
+WARN = 30  # level of rcl_interfaces/Log
+LONGEST_LINE = 1000  # letters of a tracker's log
 PENDING = 5  # frames whose box, velocity and status have not all come
 
 
@@ -65,7 +75,7 @@ def _whole(frame: dict[str, Any]) -> bool:
 
 
 class Watch:
-    """The subscriptions of one tracker; made and used in the thread that spins the node.
+    """The topics of one tracker; made and used in the thread that spins the node.
 
     Args:
         node: subscribes.
@@ -89,15 +99,29 @@ class Watch:
         self._camera: Any = None
         self._losses = Losses(lambda: int(self._camera.get_publisher_count()))
         self._came = 0
-        kinds = (
-            ("status", DiagnosticArray, self._on_status),
-            ("box", PolygonStamped, self._on_box),
-            ("velocity", TwistWithCovarianceStamped, self._on_velocity),
+        topics = (
+            (f"{tracker}/status", DiagnosticArray, self._on_status),
+            (f"{tracker}/box", PolygonStamped, self._on_box),
+            (f"{tracker}/velocity", TwistWithCovarianceStamped, self._on_velocity),
+            ("/rosout", Log, self._on_log),
         )
         self._open = [
-            node.create_subscription(kind, f"{tracker}/{topic}", callback, RELIABLE)
-            for topic, kind, callback in kinds
+            node.create_subscription(kind, topic, callback, RELIABLE)
+            for topic, kind, callback in topics
         ]
+        self._boxes = node.create_publisher(PolygonStamped, f"{tracker}/init_box", RELIABLE)
+
+    def start(self, box: Box, stamp: int, replace: bool) -> None:
+        """Send a box on the image of a stamp, ns.
+
+        Raises:
+            ValueError: nobody takes boxes, or a track is running and is not to be replaced.
+        """
+        if not self._boxes.get_subscription_count():
+            raise ValueError(f"{self._tracker} takes no boxes now")
+        if self.tracks.state in WITH_BOX and not replace:
+            raise ValueError("a track is running: replace it?")
+        self._boxes.publish(polygon_from_box(box, header_of(stamp)))
 
     def find_camera(self) -> None:
         """Subscribe to what the tracker reads, as soon as that is known and when it changes."""
@@ -110,10 +134,11 @@ class Watch:
         self._camera = self._node.create_subscription(kind, found[0], self._on_image, NEWEST_ONLY)
 
     def close(self) -> None:
-        """Take all subscriptions away."""
+        """Take all of it away."""
         for subscription in self._open:
             self._node.destroy_subscription(subscription)
         self._open.clear()
+        self._node.destroy_publisher(self._boxes)
         self._close_camera()
 
     def _close_camera(self) -> None:
@@ -129,16 +154,11 @@ class Watch:
     def _on_status(self, message: DiagnosticArray) -> None:
         try:
             values = status_values(message)
-            parts = {
-                "state": values["state"],
-                "score": float(values["score"]),
-                "latency_ms": float(values["latency_ms"]),
-                "age_s": float(values["age_s"]),
-                "reason": values["reason"],
-            }
+            numbers = {name: float(values[name]) for name in ("score", "latency_ms", "age_s")}
+            words = {name: values[name] for name in ("state", "reason")}
         except (LookupError, ValueError):
             return  # somebody else's status
-        self._add(message.header, **parts)
+        self._add(message.header, **numbers, **words)
 
     def _on_box(self, message: PolygonStamped) -> None:
         try:
@@ -150,6 +170,12 @@ class Watch:
     def _on_velocity(self, message: TwistWithCovarianceStamped) -> None:
         linear = message.twist.twist.linear
         self._add(message.header, velocity=[linear.x, linear.y])
+
+    def _on_log(self, message: Log) -> None:
+        """What the tracker says, a refusal for example, as it is written."""
+        if message.name == self._tracker.strip("/").replace("/", "."):
+            warning, text = message.level >= WARN, message.msg[:LONGEST_LINE]
+            self._on_message({"type": "log", "warning": warning, "text": text})
 
     def _add(self, header: Any, **parts: Any) -> None:
         for message in self.tracks.add(stamp_ns(header), **parts):

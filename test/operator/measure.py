@@ -3,7 +3,7 @@
 """What the operator's page costs and stands, measured on this machine.
 
 live      pictures/s and latency from the camera's stamp to the canvas in Chromium
-tracker   the tracker's own latency with and without three clients, in turns
+tracker   the tracker's own latency and CPU time with and without three clients, in turns
 hostile   100 000 random and hostile messages and 200 connections: memory, faults, other clients
 
 example: python test/operator/measure.py live tracker hostile
@@ -67,7 +67,7 @@ class Running:
         self._truth = bag.truth()
         self._camera = Camera(self._node, bag)
         tracker, self.log = find_tracker(), folder / "operator.log"
-        things.enter_context(
+        self._tracker = things.enter_context(
             TrackerProcess(tracker, tracker_arguments(bag), folder / "tracker.log")
         )
         page = tracker.with_name("operator")
@@ -104,6 +104,11 @@ class Running:
             stamp, recorded = list(self._camera.played.items())[-1]
             self._boxes.publish(polygon_from_box(self._truth[recorded], header_of(stamp)))
             time.sleep(0.5)
+
+    def work(self) -> float:
+        """CPU time that the tracker has used, ms; what others do on the machine does not count."""
+        fields = Path(f"/proc/{self._tracker.pid}/stat").read_text().rpartition(")")[2].split()
+        return 1000 * (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
 
     def memory(self) -> float:
         """Resident memory of the operator, MB."""
@@ -152,26 +157,34 @@ def live(seconds: float) -> None:
 def tracker(seconds: float) -> None:
     """The tracker's latency with 0 and 3 clients, in turns of some seconds."""
     found: dict[int, list[float]] = {0: [], 3: []}
+    work = {0: 0.0, 3: 0.0}
     with running() as world:
         for turn in range(6):
             clients = 3 * (turn % 2)
             world.start_track()
-            found[clients] += asyncio.run(_turn(world, clients, seconds / 6))
+            latencies, used = asyncio.run(_turn(world, clients, seconds / 6))
+            found[clients] += latencies
+            work[clients] += used
             print(f"tracker: {clients} clients, {len(found[clients])} frames, {_load()}")
     for clients, latencies in found.items():
         median, p95 = np.percentile(latencies, (50, 95))
-        print(f"tracker: {clients} clients: median {median:.2f} ms, p95 {p95:.2f} ms")
+        cpu = work[clients] / len(latencies)
+        print(
+            f"tracker: {clients} clients: median {median:.2f} ms, p95 {p95:.2f} ms, "
+            f"CPU {cpu:.2f} ms a frame"
+        )
 
 
-async def _turn(world: Running, clients: int, seconds: float) -> list[float]:
+async def _turn(world: Running, clients: int, seconds: float) -> tuple[list[float], float]:
     stop = asyncio.Event()
     watching = [asyncio.ensure_future(watch(world.url, v, stop)) for v in VIEWS[:clients]]
     await asyncio.sleep(2)
-    first = len(world.latencies)
+    first, used = len(world.latencies), world.work()
     await asyncio.sleep(seconds)
+    latencies, used = world.latencies[first:], world.work() - used
     stop.set()
     await asyncio.gather(*watching)
-    return world.latencies[first:]
+    return latencies, used
 
 
 def hostile(messages: int) -> None:

@@ -7,6 +7,7 @@ from __future__ import annotations
 import asyncio
 import threading
 import time
+from functools import cache
 from pathlib import Path
 
 from rclpy.serialization import deserialize_message
@@ -30,6 +31,13 @@ PARAMETERS = [
 ]  # fmt: skip
 
 
+@cache
+def recorded() -> tuple[list[Box], list[bytes]]:
+    """True boxes and serialized images of the bag; read once for all servers."""
+    with BagReader(BAG) as bag:
+        return list(bag.truth().values()), [r.cdr for r in bag.recorded(bag.image_topic)]
+
+
 class RecordedBridge:
     """A bridge whose tracker knows the truth, and which keeps what it was asked for.
 
@@ -42,9 +50,7 @@ class RecordedBridge:
     """
 
     def __init__(self, rate: float = 15.0) -> None:
-        with BagReader(BAG) as bag:
-            self._truth = list(bag.truth().values())
-            self._frames = [r.cdr for r in bag.recorded(bag.image_topic)]
+        self._truth, self._frames = recorded()
         self.asked: list[tuple] = []
         self.shown: dict[int, int] = {}
         self.state, self.refusal = "IDLE", ""

@@ -204,7 +204,8 @@ $("sound").addEventListener("change", ({ target }) => {
 $("parameters").addEventListener("submit", (event) => event.preventDefault());
 
 document.addEventListener("keydown", (event) => {
-  if (event.target.closest("input, select, button, dialog, summary")) return;
+  const others = event.key === "Escape" ? "dialog" : "input, select, button, dialog, summary";
+  if (event.target.closest(others)) return;
   const mine = pick.key(event);
   const plain = !mine && !event.ctrlKey && !event.altKey && !event.metaKey;
   if (plain && event.key === "p") pick.begin();

@@ -34,7 +34,7 @@ export class Pick {
   #canvas;
   #view;
   #drag = null;
-  #sending = false;
+  sending = false;
 
   /** hooks: onFreeze(on), onChange(), isDirect(), send(box, stamp) -> whether it was accepted. */
   constructor(canvas, view, hooks) {
@@ -71,12 +71,12 @@ export class Pick {
 
   async send() {
     const { box, frozen } = this.#view;
-    if (!box || this.#sending || Math.min(box[2], box[3]) < 1) return;
-    this.#sending = true;
+    if (!box || this.sending || Math.min(box[2], box[3]) < 1) return;
+    this.sending = true;
     try {
       if (await this.hooks.send(box, frozen.stamp)) this.letGo();
     } finally {
-      this.#sending = false;
+      this.sending = false;
     }
   }
 
@@ -107,7 +107,7 @@ export class Pick {
   }
 
   #press(event) {
-    if (!event.isPrimary || event.button !== 0 || this.#sending) return;
+    if (!event.isPrimary || event.button !== 0 || this.sending) return;
     if (!this.active && !this.#freeze()) return;
     this.#canvas.setPointerCapture(event.pointerId);
     this.#canvas.focus();
