@@ -34,6 +34,10 @@ class FollowerConfig:
     )
     max_linear: float = parameter(0.6, "fastest drive", unit="m/s", low=0.0, high=5.0)
     max_angular: float = parameter(1.0, "fastest turn", unit="rad/s", low=0.0, high=5.0)
+    ease: float = parameter(
+        0.2, "time in which commands come near what is wanted; a stop is at once",
+        unit="s", low=0.0, high=2.0,
+    )  # fmt: skip
     timeout: float = parameter(
         0.3, "without news of the target for this long it stops", unit="s", low=0.05, high=0.45
     )
@@ -72,6 +76,7 @@ class Follower:
         self._placed = -math.inf
         self._reckoning = Reckoning()
         self._ahead = FeedForward(config.timeout)
+        self._told: tuple[float, float, float] | None = None  # s, m/s, rad/s
 
     def on_status(self, state: State, now: float) -> None:
         """Take the state of the track."""
@@ -100,24 +105,39 @@ class Follower:
 
     def command(self, now: float) -> tuple[float, float]:
         """(m/s forward, rad/s to the left) from now on; (0, 0) when in doubt."""
-        linear, angular = self._wanted(now)
+        in_doubt = now - self._heard > self.config.timeout or self._state not in (
+            State.TRACKING,
+            State.COASTING,
+        )
+        linear, angular = (0.0, 0.0) if in_doubt else self._eased(*self._wanted(now), now)
+        self._told = now, linear, angular
         self._reckoning.told(linear, angular, now)
         self._ahead.told(linear, angular)
         return linear, angular
 
+    def _eased(self, linear: float, angular: float, now: float) -> tuple[float, float]:
+        """What is wanted, or a part of the way there since the last command; a stop in full.
+
+        A target that comes out from behind something is not where it was thought to be: a robot
+        that jumps to the new command shakes its camera.
+        """
+        if self._told is None or self.config.ease == 0:
+            return linear, angular
+        told, *before = self._told
+        share = -math.expm1(-max(now - told, 0.0) / self.config.ease)
+        wanted = zip((linear, angular), before, strict=True)
+        eased = [last + share * (to - last) if to else 0.0 for to, last in wanted]
+        return eased[0], eased[1]
+
     def _wanted(self, now: float) -> tuple[float, float]:
+        """The command without regard to those before."""
         config, unknown_for = self.config, now - self._placed
-        if now - self._heard > config.timeout or self._state not in (
-            State.TRACKING,
-            State.COASTING,
-        ):
-            return 0.0, 0.0
         aimed = now - self._aimed <= config.timeout
         bearing = self._bearing if aimed else 0.0
         if unknown_for > LONGEST_PREDICTION:
             return 0.0, self._turn(bearing)
         x, z = self._reckoning.predicted(now)
-        if self._state is State.COASTING:
+        if self._state is State.COASTING or unknown_for <= config.timeout:
             bearing = math.atan2(x, z)
         part = config.feed_forward if self._ahead.known(now) else 0.0
         outwards, around = (part * rate for rate in self._ahead.rates(x, z, now))

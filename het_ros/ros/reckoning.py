@@ -9,7 +9,8 @@ from collections import deque
 
 import numpy as np
 
-MEMORY = 1.0  # s of places that the velocity is taken from
+MEMORY = 1.0  # s of places that the velocity is taken from while nothing is seen
+RECENT = 0.5  # s of places that its place is taken from while it is: a turn is seen so late
 SHORTEST = 0.3  # s: over less a velocity is noise
 
 
@@ -48,19 +49,11 @@ class Reckoning:
         if not self._places:
             return 0.0, 0.0
         times, *places = np.array(self._places).T
-        x, z = (self._at(now, times, track) for track in places)
+        x, z = (_carried_on(now, times, track) for track in places)
         right, forward, yaw = self._pose
         cos, sin = math.cos(yaw), math.sin(yaw)
         x, z = x - right, z - forward
         return cos * x - sin * z, sin * x + cos * z
-
-    def _at(self, now: float, times: np.ndarray, track: np.ndarray) -> float:
-        """A coordinate (n,) m of ``times`` (n,) s, carried on at its velocity, m."""
-        last = float(track[-1])
-        if times[-1] - times[0] < SHORTEST:
-            return last
-        speed = np.polyfit(times - times[-1], track, 1)[0]
-        return last + float(speed) * (now - float(times[-1]))
 
     def _move(self, now: float) -> None:
         """Move on by the command that held until now."""
@@ -73,3 +66,18 @@ class Reckoning:
         self._pose = (
             x + linear * math.sin(yaw) * passed, z + linear * math.cos(yaw) * passed, yaw
         )  # fmt: skip
+
+
+def _carried_on(now: float, times: np.ndarray, track: np.ndarray) -> float:
+    """A coordinate (n,) m of ``times`` (n,) s, at ``now`` on the line through the latest of them.
+
+    Who drives by a line does not shake as single places do, and is not late behind an even
+    motion, as by their mean.
+    """
+    last = float(times[-1])
+    if last - times[0] < SHORTEST:
+        return float(track[-1])
+    recent = times >= last - RECENT
+    place = np.polyfit(times[recent] - last, track[recent], 1)[1]
+    speed = np.polyfit(times - last, track, 1)[0]
+    return float(place + speed * (now - last))

@@ -26,6 +26,7 @@ METRES = VelocityConfig(
     steady_time=4.0,
     brief_time=0.1,
     first_speed=1.5,
+    coast_time=4.0,
     coast_change=2.0,
 )
 

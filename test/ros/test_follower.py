@@ -46,6 +46,27 @@ def test_turns_to_the_target_and_keeps_the_distance(bearing, away, linear, angul
     assert following(bearing=bearing, away=away).command(0.0) == pytest.approx((linear, angular))
 
 
+def test_commands_come_near_what_is_wanted_in_time():
+    follower = following(away=CONFIG.distance)
+    commands = [follower.command(0.0)]
+    for now in (CONFIG.ease, 2 * CONFIG.ease):
+        follower.on_bearing(0.8, 0.6, now)
+        follower.on_place(8.0, 6.0, now)
+        follower.on_status(State.TRACKING, now)
+        commands.append(follower.command(now))
+    linear, angular = np.abs(commands).T
+    assert linear[0] == 0 and 0.5 < linear[1] / linear[2] < 0.8
+    assert angular[2] == pytest.approx((1 - math.exp(-2)) * CONFIG.max_angular)
+
+
+def test_turns_by_the_bearing_where_the_place_is_not_fresh():
+    follower = following(bearing=0.2)
+    now = CONFIG.timeout + 0.1
+    follower.on_bearing(-0.2, 1.0, now)
+    follower.on_status(State.TRACKING, now)
+    assert follower.command(now)[1] > 0
+
+
 @pytest.mark.parametrize("state", [State.LOST, State.IDLE])
 def test_stops_at_once_when_the_target_is_lost(state):
     follower = following(bearing=0.3)
@@ -70,7 +91,7 @@ def test_drives_on_slower_and_slower_while_the_target_is_hidden():
         now = i * CONFIG.drive_on / 16
         follower.on_status(State.COASTING, now)
         linear, angular = follower.command(now)
-        assert angular < 0
+        assert angular < 0.01, "it turns to where the target should be"
         speeds.append(linear)
     assert speeds[0] == CONFIG.max_linear
     assert speeds == sorted(speeds, reverse=True)
@@ -136,6 +157,7 @@ def test_the_node_publishes_commands_and_stops_when_the_tracker_falls_silent(gra
     node.on_pose(pose_from_estimate(estimate, header_at(1.0)))
     status = Status(State.TRACKING, 1.0, 0.01, 0.0, "")
     node.on_status(status_message(status, "tracker", header_at(1.0)))
+    clock[0] = 0.1
     graph.spin_until(lambda: got[-1].twist.angular.z < 0, "a turn to the right")
     assert got[-1].header.frame_id == "base_link"
     clock[0] = 0.5

@@ -34,7 +34,7 @@ class VelocityConfig:
         first_speed: deviation of the steady velocity before anything is known, sides/s.
         rate: weight of a new innovation in their mean (about 20 frames).
         least, most: limits of that mean, of what the filter expects (1 is as expected).
-        coast_time: s, in which a hidden target's velocity falls to 1/e.
+        coast_time: s, in which a velocity falls to 1/e while it is predicted, hidden or ahead.
         coast_change: white acceleration of a target that is not seen, sides/s^1.5.
     """
 
@@ -123,7 +123,7 @@ class VelocityFilter:
             self._state[1].copy(),
             self._state[2].copy(),
             float(spread[1:, 1:].sum()) * np.eye(self._state.shape[1]),
-            config.steady_time if self._seen else config.coast_time,
+            config.coast_time,  # what is not measured any more fades as a hidden target's
             config.brief_time,
             self._side * change,
         )
