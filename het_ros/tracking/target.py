@@ -386,7 +386,7 @@ class Target:
     def _update_model(self, found: _Found, decision: Decision, image: Image, dt: float) -> None:
         """Size, base ensembles and background follow the target, as far as it is believed."""
         ratio, centre = 1.0, np.array(found.box.centre)
-        if self._extent:
+        if self._extent and decision.state is State.TRACKING:
             cell, cells = self._extractor.cell, np.array(self._extractor.cells)
             self._extent.follow(self._colour.seen, found.peak.corner * cell, cells * cell)
         if decision.weight:
