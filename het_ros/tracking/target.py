@@ -158,8 +158,9 @@ class Target:
             config.longest_dt,
         )
         self._velocity = VelocityFilter(np.array(box.centre), side)
-        self._network = NetworkEnsemble(Path(config.network)) if config.network else None
-        if self._network:
+        self._network: NetworkEnsemble | None = None
+        if config.network:
+            self._network = NetworkEnsemble(Path(config.network), config.network_thread)
             self._network.start(image, box)
         self._ego_motion = EgoMotion(image)
         self._background = Background(image.shape, side) if config.background else None
@@ -254,16 +255,20 @@ class Target:
     def _find(self, image: Image, at: Floats) -> _Found:
         """All base ensembles vote; the best place is the target's if anything is."""
         self._disagreement = None
+        answer = self._network.begin(image, at, self._size.size) if self._network else None
         look = self._look(image, at)
-        if self._network is None:
-            return self._best_of(look, self._vote(look))
-        proposal = self._network.propose(look, at)
+        votes = self._vote(look)
+        if answer is None:
+            return self._best_of(look, self._with_further(look, votes))
+        proposal = answer()
         theirs = np.array(proposal.box.centre)
         if proposal.score > self._fusion.sure and not self._shows(look, theirs):
             look = self._look(image, theirs)
-        return self._fused(look, self._vote(look), proposal)
+            votes = self._vote(look)
+        return self._fused(look, self._with_further(look, votes), proposal)
 
     def _vote(self, look: Look) -> _Votes:
+        """The votes of our own ensembles, which may be asked more than once a frame."""
         share = self._config.colour_weight
         template, colour = self._patches.vote(look), self._colour.vote(look)
         response = (1 - share) * template + share * colour
@@ -271,11 +276,16 @@ class Target:
         if near is not None:
             # A factor: what slides over the target moves smoothly too, but does not look like it.
             response = response * (1 + self._config.flow_weight * near)
+        return _Votes(template, colour, response)
+
+    def _with_further(self, look: Look, votes: _Votes) -> _Votes:
+        """The votes with those of the ensembles that were given, which are asked once a frame."""
+        response = votes.response
         for ensemble in self._further:
             gain = ensemble.vote(look)
             if gain is not None:
                 response = response * (1 + gain)
-        return _Votes(template, colour, response)
+        return replace(votes, response=response)
 
     def _best_of(self, look: Look, votes: _Votes) -> _Found:
         peak, growth = best_place(votes.response), 0.0
