@@ -30,10 +30,10 @@ class TrackerConfig:
     )
     # Search window.
     working_side: float = parameter(
-        48.0, "sqrt(w h) of the target in the search window", unit="px", low=8, high=1000
+        40.0, "sqrt(w h) of the target in the search window", unit="px", low=8, high=1000
     )
     search_radius: float = parameter(
-        34.0,
+        28.0,
         "how far the target is looked for around its place",
         unit="working px",
         low=1,
@@ -55,9 +55,9 @@ class TrackerConfig:
     ridge: float = parameter(
         0.01, "regularisation over the variance of a feature", low=1e-9, high=1e3
     )
-    learning_rate: float = parameter(0.01, "slow rate of the sub-patches' model", low=0, high=1)
+    learning_rate: float = parameter(0.02, "slow rate of the sub-patches' model", low=0, high=1)
     fast_learning_rate: float = parameter(
-        0.05, "fast rate of the sub-patches' model, which counts half", low=0, high=1
+        0.1, "fast rate of the sub-patches' model, which counts half", low=0, high=1
     )
     first_frame: float = parameter(
         0.1, "share of the first frame in what is learnt, never forgotten", low=0, high=1
@@ -65,7 +65,7 @@ class TrackerConfig:
     colour_weight: float = parameter(
         0.4, "share of the colour histograms in the votes; 0 is without", low=0, high=1
     )
-    colour_rate: float = parameter(0.02, "rate of the colour histograms", low=0, high=1)
+    colour_rate: float = parameter(0.04, "rate of the colour histograms", low=0, high=1)
     flow_weight: float = parameter(
         0.25, "how much a place gains by optical flow; 0 is without", low=0, high=5
     )
@@ -76,7 +76,7 @@ class TrackerConfig:
         True, "the network works in a second thread where it may use a second processor"
     )
     # Size.
-    scale_rate: float = parameter(0.02, "rate of the scale filter", low=0, high=1)
+    scale_rate: float = parameter(0.04, "rate of the scale filter", low=0, high=1)
     growth_limit: float = parameter(
         0.42,
         "the size changes at most this fast beside what optical flow measures",

@@ -24,7 +24,7 @@ from het_ros.tracking.cost import check_cost
 from het_ros.tracking.estimate import Estimate, Patch, State, lasting_deviation
 from het_ros.tracking.features.extractor import FeatureExtractor, target_cells
 from het_ros.tracking.fitted import FITTED
-from het_ros.tracking.middle.alignment import FirstFrameAlignment
+from het_ros.tracking.middle.colour_extent import ColourExtent
 from het_ros.tracking.middle.fusion import (
     Agreement,
     Disagreement,
@@ -49,6 +49,19 @@ _WEIGHTS = 0.1, 0.9
 
 
 @dataclass(frozen=True)
+class LearningConfig:
+    """When the models learn.
+
+    Attributes:
+        all: of the first frames each is learnt (chosen: a single one is a poor sample).
+        every: of the others one in so many (measured: time, at no loss).
+    """
+
+    all: int = 6
+    every: int = 2
+
+
+@dataclass(frozen=True)
 class _Found:
     """The best place of a look.
 
@@ -59,7 +72,6 @@ class _Found:
         score: mean score of the sub-patches there; ``distractor`` the highest elsewhere.
         colour: likelihood of the colours there.
         weights: (Q,) of the sub-patches there.
-        growth: logarithm of the ratio by which the first frame draws the size.
         proposal: the network's box there, if it is followed.
         agreement: what the network says of it, if there is one.
     """
@@ -71,7 +83,6 @@ class _Found:
     distractor: float
     colour: float
     weights: Floats
-    growth: float = 0.0
     proposal: Proposal | None = None
     agreement: Agreement | None = None
 
@@ -142,6 +153,7 @@ class Target:
         # In gray images blur takes texture away as it does shape: the two must not count twice.
         self._colour_power = 0.7 if gray else 1.0
         self._config = config
+        self._extent = None if config.network else ColourExtent()
         self._size = Size(
             np.array([box.w, box.h]),
             cells,
@@ -169,13 +181,10 @@ class Target:
         self._fusion = FusionConfig.of(calibration)
         self._last_seen = np.array(box.centre)
         self._score = 1.0
-        self._alignment: FirstFrameAlignment | None = None
         self._judged = box
         self._disagreement: Disagreement | None = None
-        look = self._look(image, np.array(box.centre))
-        self._learn(look, box, 1.0, 1.0)
-        middle = look.frame.window.to_window(np.array(box.centre))
-        self._alignment = FirstFrameAlignment(look.frame.channels, middle, cells)
+        self._frames = 0
+        self._learn(self._look(image, np.array(box.centre)), box, 1.0, 1.0)
 
     @property
     def confidence(self) -> Confidence:
@@ -206,6 +215,7 @@ class Target:
             dt: time since the last frame, s.
             witness, candidates: see :meth:`HierarchicalEnsembleTracker.update`.
         """
+        self._frames += 1
         step = self._motion.step(dt)
         self._predict(image, dt, step)
         found = self._find(image, self._search_place(image, candidates))
@@ -288,15 +298,8 @@ class Target:
         return replace(votes, response=response)
 
     def _best_of(self, look: Look, votes: _Votes) -> _Found:
-        peak, growth = best_place(votes.response), 0.0
-        if self._alignment:
-            correction = self._alignment.correction(
-                look.frame.channels, look.middle_of(peak.corner)
-            )
-            peak = replace(peak, corner=peak.corner + correction.shift)
-            growth = correction.growth
-        found = self._at(look, votes, peak, look.centre_of(peak.corner))
-        return replace(found, growth=growth)
+        peak = best_place(votes.response)
+        return self._at(look, votes, peak, look.centre_of(peak.corner))
 
     def _at(self, look: Look, votes: _Votes, peak: Peak, centre: Floats) -> _Found:
         """A target with its ``centre`` (x, y) there, image px, next to a peak of the votes."""
@@ -393,9 +396,12 @@ class Target:
     def _update_model(self, found: _Found, decision: Decision, image: Image, dt: float) -> None:
         """Size, base ensembles and background follow the target, as far as it is believed."""
         ratio, centre = 1.0, np.array(found.box.centre)
+        if self._extent:
+            cell, cells = self._extractor.cell, np.array(self._extractor.cells)
+            self._extent.follow(self._colour.seen, found.peak.corner * cell, cells * cell)
         if decision.weight:
             middle = found.look.middle_of(found.peak.corner)
-            ratio = self._size.follow(found.look.frame, middle, self._flow.flow, dt, found.growth)
+            ratio = self._size.follow(found.look.frame, middle, self._flow.flow, dt)
         if found.proposal:
             before = self._size.size
             self._size.size = followed_size(before, found.proposal)
@@ -406,6 +412,10 @@ class Target:
             self._background.remember(image, box, dt)
 
     def _learn(self, look: Look, box: Box, ratio: float, weight: float) -> None:
+        """Learn what is there; the flow remembers every frame, the models need not."""
+        config = LearningConfig()
+        if self._frames > config.all and self._frames % config.every:
+            weight = 0.0
         for ensemble in self._ensembles:
             ensemble.learn(look, box, weight)
         if weight:
@@ -431,6 +441,8 @@ class Target:
     def estimate(self, score: float, state: State, patches: tuple[Patch, ...] = ()) -> Estimate:
         """What the two filters of the motion hold, as an estimate."""
         box, motion = self._box(self._motion.centre), self._velocity.motion
+        if self._extent:
+            box = self._extent.refined(box)
         lasting = lasting_deviation(score) * np.array([box.w, box.h])
         covariance = np.zeros((4, 4))
         covariance[:2, :2] = self._motion.covariance[:2, :2] + np.diag(lasting**2)

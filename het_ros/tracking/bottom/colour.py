@@ -52,6 +52,9 @@ class ColourEnsemble:
         size: (w, h) of the target, working px.
         cell: side of a cell, working px.
         rate: weight of the new frame, 0..1.
+
+    Attributes:
+        seen: (H, W) float32, likelihood of each px of the window in the last vote.
     """
 
     def __init__(self, size: tuple[int, int], cell: int, rate: float) -> None:
@@ -59,14 +62,15 @@ class ColourEnsemble:
         self._size, self._cell, self._rate = size, cell, rate
         self._target: Plane | None = None
         self._around: Plane = np.empty(0, np.float32)
+        self.seen: Plane = np.empty((0, 0), np.float32)
         # A window is asked for its bins twice a frame, to vote and to learn.
         self._pixels: Pixels | None = None
         self._bins: NDArray[np.intp] = np.empty(0, np.intp)
 
     def vote(self, look: Look) -> Plane:
         """Mean likelihood in a box of the target's size at each place, 0..1."""
-        likelihood = cell_means(self.likelihood(look.frame.window.pixels), self._cell)
-        return box_means(likelihood, look.cells, look.places)
+        self.seen = self.likelihood(look.frame.window.pixels)
+        return box_means(cell_means(self.seen, self._cell), look.cells, look.places)
 
     def learn(self, look: Look, box: Box, weight: float) -> None:
         """Take in the target in ``box``, image px; see :class:`BaseEnsemble`."""

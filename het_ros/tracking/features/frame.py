@@ -27,11 +27,13 @@ class Frame:
     Attributes:
         window: the pixels, with its places counted in cells.
         channels: C planes (H, W) uint8, one value a cell.
+        stack: (H, C, W) float32, the same row by row.
         features: (m, rows, columns), the features of a sub-patch with its corner in each cell.
     """
 
     window: Window
     channels: tuple[Pixels, ...]
+    stack: NDArray[np.float32]
     features: FeatureMaps
 
     @classmethod
@@ -43,7 +45,13 @@ class Frame:
         """
         pixels = _sealed(window.pixels)
         planes = tuple(_sealed(channel) for channel in channels)
-        return cls(replace(window, pixels=pixels), planes, _sealed(features))
+        stack = _sealed(stacked(planes))
+        return cls(replace(window, pixels=pixels), planes, stack, _sealed(features))
+
+
+def stacked(channels: Sequence[Pixels]) -> NDArray[np.float32]:
+    """C planes (H, W) as one array (H, C, W) float32: whole rows of all channels are one piece."""
+    return np.stack(channels, axis=1, dtype=np.float32)
 
 
 def _sealed(array: NDArray[_Kind]) -> NDArray[_Kind]:

@@ -4,25 +4,24 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from typing import Any
+import math
+from functools import cache
 
 import numpy as np
 from numpy.typing import NDArray
 
 Floats = NDArray[np.float64]
 Features = NDArray[np.float32]
-Planes = Sequence[NDArray[Any]]
 
 
-def grid_means(planes: Planes, centre: Floats, sides: Floats, grid: tuple[int, int]) -> Features:
+def grid_means(stack: Features, centre: Floats, sides: Floats, grid: tuple[int, int]) -> Features:
     """Means of channels over grids of rectangles of several sizes.
 
     Which part of a px a rectangle covers is a product of a part in x and a part in y, so all
     sizes are read by two matrix products.
 
     Args:
-        planes: C channels (H, W).
+        stack: (H, C, W) float32, C channels row by row.
         centre: (x, y) of all grids or (S, 2) of each, px.
         sides: (S, 2), widths and heights of the grids, px; what lies outside counts as empty.
         grid: (a, b), rectangles across and down.
@@ -30,24 +29,20 @@ def grid_means(planes: Planes, centre: Floats, sides: Floats, grid: tuple[int, i
     Returns:
         (S, b, C, a) float32, the rectangles' rows in the second place, their columns in the last.
     """
-    height, width = planes[0].shape
-    sizes, channels = len(sides), len(planes)
-    x, y = centre[..., :1], centre[..., 1:]
-    xs = x + sides[:, :1] * np.linspace(-0.5, 0.5, grid[0] + 1)  # (S, a + 1)
-    ys = y + sides[:, 1:] * np.linspace(-0.5, 0.5, grid[1] + 1)
+    height, channels, width = stack.shape
+    sizes = len(sides)
+    xs = centre[..., :1] + sides[:, :1] * _lines(grid[0])  # (S, a + 1)
+    ys = centre[..., 1:] + sides[:, 1:] * _lines(grid[1])
     xs = np.minimum(np.maximum(xs, 0), width)
     ys = np.minimum(np.maximum(ys, 0), height)
-    columns, across = _coverage(xs, width)
-    rows, down = _coverage(ys, height)
-    stack = np.empty((rows.stop - rows.start, channels, columns.stop - columns.start), np.float32)
-    for channel, plane in enumerate(planes):
-        stack[:, channel] = plane[rows, columns]
-    strips = down.reshape(sizes * grid[1], -1) @ stack.reshape(len(stack), -1)
+    top = min(int(ys.min()), height - 1)
+    rows = stack[top : max(top + 1, math.ceil(ys.max()))]
+    down = _coverage(ys - top, len(rows)).reshape(sizes * grid[1], -1)
+    strips = (down @ rows.reshape(len(rows), -1)).reshape(sizes, grid[1] * channels, width)
     # A copy of these few makes the product twice as fast.
-    across = np.ascontiguousarray(across.transpose(0, 2, 1))
-    sums = strips.reshape(sizes, grid[1] * channels, -1) @ across
+    across = np.ascontiguousarray(_coverage(xs, width).transpose(0, 2, 1))
+    means = (strips @ across).reshape(sizes, grid[1], channels, grid[0])
     areas = (ys[:, 1:] - ys[:, :-1])[:, :, None] * (xs[:, 1:] - xs[:, :-1])[:, None, :] + 1e-3
-    means = sums.reshape(sizes, grid[1], channels, grid[0])
     means *= (1 / areas).astype(np.float32)[:, :, None, :]
     return np.asarray(means)
 
@@ -75,19 +70,20 @@ class Normalisation:
         return features
 
 
-def _coverage(lines: Floats, length: int) -> tuple[slice, Features]:
-    """Part of each px of an axis that lies between one line and the next.
+@cache
+def _lines(parts: int) -> Floats:
+    """(parts + 1,) places of the lines that divide a side of 1 around 0."""
+    return np.linspace(-0.5, 0.5, parts + 1)
+
+
+def _coverage(lines: Floats, length: int) -> Features:
+    """Part of each px of an axis that lies between one line and the next: (S, g, length).
 
     Args:
         lines: (S, g + 1), within 0..length.
         length: of the axis, px.
-
-    Returns:
-        The range of px that is covered at all, one or more, and (S, g, px) for these.
     """
-    first = min(int(lines.min()), length - 1)
-    last = max(first + 1, int(np.ceil(lines.max())))
     # Between 0 and 1, which is all that is left of it, float32 says it well enough.
-    before = (lines[:, :, None] - np.arange(first, last)).astype(np.float32)
+    before = np.subtract.outer(lines, np.arange(length)).astype(np.float32)
     np.minimum(np.maximum(before, 0, out=before), 1, out=before)
-    return slice(first, last), before[:, 1:] - before[:, :-1]
+    return np.asarray(before[:, 1:] - before[:, :-1])

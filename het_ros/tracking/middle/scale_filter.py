@@ -15,7 +15,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from het_ros.tracking.middle.grid_means import Features, Floats, Normalisation, Planes, grid_means
+from het_ros.tracking.middle.grid_means import Features, Floats, Normalisation, grid_means
 from het_ros.tracking.middle.running_mean import RunningMean
 from het_ros.tracking.middle.voting import parabola_offset
 
@@ -63,14 +63,14 @@ class ScaleFilter:
         # Of the S frequencies of real features the first K = S // 2 + 1 say all.
         self._mean = RunningMean(rate, first_frame)  # numerator (d, K), energy (K,)
 
-    def change(self, planes: Planes, centre: Floats) -> float:
+    def change(self, stack: Features, centre: Floats) -> float:
         """Ratio of the target's size in this frame to the present size.
 
         Args:
-            planes: C channels (H, W) uint8.
+            stack: (H, C, W) float32, channels row by row.
             centre: (x, y) of the target, px of the channels.
         """
-        spectrum = self._spectrum(planes, centre, 1.0)
+        spectrum = self._spectrum(stack, centre, 1.0)
         levels = len(self._exponents)
         numerator, energy = self._mean.values
         energy = energy + self._config.ridge * _mean_of_all(energy, levels)
@@ -79,25 +79,25 @@ class ScaleFilter:
         level = best + parabola_offset(response, best)
         return float(self._config.step ** (level - (levels - 1) / 2))
 
-    def learn(self, planes: Planes, centre: Floats, ratio: float, weight: float) -> None:
+    def learn(self, stack: Features, centre: Floats, ratio: float, weight: float) -> None:
         """Learn the target at ``centre``, ``ratio`` times the present size; first call: outright.
 
         Args:
-            planes: C channels (H, W) uint8.
+            stack: (H, C, W) float32, channels row by row.
             centre: (x, y) of the target, px of the channels.
             ratio: what :meth:`change` said, as far as it was followed.
             weight: 0..1, of this frame.
         """
-        spectrum = self._spectrum(planes, centre, ratio)
+        spectrum = self._spectrum(stack, centre, ratio)
         parts = spectrum.view(np.float32)
         energy = np.einsum("dk,dk->k", parts, parts).reshape(-1, 2).sum(axis=1)
         numerator = np.conj(spectrum) * self._label
         self._mean.learn(numerator, energy.astype(np.float64), weight=weight)
 
-    def _spectrum(self, planes: Planes, centre: Floats, ratio: float) -> Spectra:
+    def _spectrum(self, stack: Features, centre: Floats, ratio: float) -> Spectra:
         """(d, K): channel means over the grid, centred and scaled, transformed over the sizes."""
         sides = ratio * self._config.step ** self._exponents[:, None] * self._size  # (S, 2)
-        means = grid_means(planes, centre, sides, self._config.grid)  # (S, g, C, g)
+        means = grid_means(stack, centre, sides, self._config.grid)  # (S, g, C, g)
         features = self._normalisation.features(means)
         # What is real and what imaginary of a frequency lie next to each other.
         return np.asarray((features.T @ self._to_spectrum).view(np.complex64))

@@ -68,9 +68,7 @@ class Size:
         self._limit = limit
         self._frames = 0
 
-    def follow(
-        self, frame: Frame, centre: Floats, flow: Flow | None, dt: float, drawn: float = 0.0
-    ) -> float:
+    def follow(self, frame: Frame, centre: Floats, flow: Flow | None, dt: float) -> float:
         """Take over the change of size in a frame; returns the ratio to the size before.
 
         Args:
@@ -78,14 +76,13 @@ class Size:
             centre: (x, y) of the target, cells.
             flow: what optical flow says of it.
             dt: time since the last frame, s.
-            drawn: logarithm of the ratio by which the first frame draws the size.
         """
         config = self._config
         known = min(self._frames / config.known_after, 1.0)
         most = self._limit * dt * known
         by_flow = self._by_flow(flow)
-        by_filter = math.log(self._filter.change(frame.channels, centre))
-        growth = by_flow + min(max(by_filter + drawn - by_flow, -most), most)
+        by_filter = math.log(self._filter.change(frame.stack, centre))
+        growth = by_flow + min(max(by_filter - by_flow, -most), most)
         if growth < 0 and self.size.min() * math.exp(growth) < config.smallest:
             growth = 0.0
         ratio = math.exp(growth)
@@ -95,7 +92,7 @@ class Size:
     def learn(self, frame: Frame, centre: Floats, ratio: float, weight: float) -> None:
         """Learn the target at ``centre``, cells, ``ratio`` times as large as it was looked at."""
         self._frames += 1
-        self._filter.learn(frame.channels, centre, ratio, weight)
+        self._filter.learn(frame.stack, centre, ratio, weight)
 
     def _by_flow(self, flow: Flow | None) -> float:
         """Logarithm of the change that flow is believed."""

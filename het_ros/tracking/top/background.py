@@ -10,6 +10,7 @@ target was elsewhere), and with the target's place. What fits the first better i
 
 from __future__ import annotations
 
+import math
 from collections import deque
 from collections.abc import Iterable
 from dataclasses import dataclass
@@ -176,9 +177,13 @@ class Background:
 
     def _was_target(self, one: Keyframe, box: Box) -> bool:
         """Whether the target's box in a keyframe covered much of what is in ``box`` now."""
-        way = np.array(one.box.centre) - one.at - np.array(box.centre) + self._at
-        sides = np.array([one.box.w + box.w, one.box.h + box.h]) / 2
-        return bool((np.abs(way) <= self._config.elsewhere * sides).all())
+        config = self._config
+        (x, y), (then_x, then_y) = box.centre, one.box.centre
+        moved_x, moved_y = (self._at - one.at).tolist()
+        return bool(
+            abs(then_x + moved_x - x) <= config.elsewhere * (one.box.w + box.w) / 2
+            and abs(then_y + moved_y - y) <= config.elsewhere * (one.box.h + box.h) / 2
+        )
 
 
 def best_fit(pixels: Image, corner: Floats, patch: Image, error: Floats) -> float | None:
@@ -192,12 +197,14 @@ def best_fit(pixels: Image, corner: Floats, patch: Image, error: Floats) -> floa
     """
     if pixels.ndim != patch.ndim:
         return None
-    size = np.array(patch.shape[1::-1])
-    first = np.rint(corner).astype(int)
-    margin = np.ceil(error).astype(int)
-    left, top = np.maximum(first - margin, 0)
-    right, bottom = np.minimum(first + size + margin, pixels.shape[1::-1])
-    if right - left < size[0] or bottom - top < size[1]:
-        return None
-    around = pixels[top:bottom, left:right]
+    ranges = []
+    for start, more, length, limit in zip(
+        corner.tolist()[::-1], error.tolist()[::-1], patch.shape, pixels.shape, strict=False
+    ):
+        first, margin = round(start), math.ceil(more)
+        low, high = max(first - margin, 0), min(first + length + margin, limit)
+        if high - low < length:
+            return None
+        ranges.append(slice(low, high))
+    around = pixels[ranges[0], ranges[1]]
     return float(cv2.matchTemplate(around, patch, cv2.TM_CCOEFF_NORMED).max())

@@ -32,7 +32,7 @@ def looks(sequence):
 
 
 def arrays_of(frame):
-    return [frame.window.pixels, *frame.channels, frame.features]
+    return [frame.window.pixels, *frame.channels, frame.stack, frame.features]
 
 
 def test_nothing_of_a_frame_can_be_written(looks):

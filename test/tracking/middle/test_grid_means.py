@@ -3,10 +3,12 @@
 import numpy as np
 import pytest
 
+from het_ros.tracking.features.frame import stacked
 from het_ros.tracking.middle.grid_means import Normalisation, grid_means
 
 RNG = np.random.default_rng(4)
 PLANES = tuple(RNG.integers(0, 256, (30, 40), np.uint8) for _ in range(3))
+STACK = stacked(PLANES)
 
 
 @pytest.mark.parametrize(
@@ -22,7 +24,7 @@ PLANES = tuple(RNG.integers(0, 256, (30, 40), np.uint8) for _ in range(3))
     ],
 )
 def test_grid_means_of_whole_px(centre, sides, grid):
-    found = grid_means(PLANES, np.array(centre), np.array(sides, float), grid)
+    found = grid_means(STACK, np.array(centre), np.array(sides, float), grid)
     assert found.shape == (len(sides), grid[1], len(PLANES), grid[0])
     centres = np.broadcast_to(centre, (len(sides), 2))
     for s, (width, height) in enumerate(sides):
@@ -43,7 +45,7 @@ def test_between_whole_px_sums_are_interpolated(part):
 
     def total(wide):
         centre = np.array([left + wide / 2, top + height / 2])
-        mean = grid_means(PLANES, centre, np.array([[wide, height]], float), (1, 1))[0, 0, :, 0]
+        mean = grid_means(STACK, centre, np.array([[wide, height]], float), (1, 1))[0, 0, :, 0]
         return mean * wide * height
 
     wanted = (1 - part) * total(width) + part * total(width + 1)
@@ -51,7 +53,7 @@ def test_between_whole_px_sums_are_interpolated(part):
 
 
 def test_a_flat_image_has_the_same_mean_at_every_size():
-    flat = (np.full((30, 40), 77, np.uint8),)
+    flat = np.full((30, 1, 40), 77, np.float32)
     sides = np.array([[3.3, 5.1], [11.7, 9.9], [20.2, 24.6]])
     found = grid_means(flat, np.array([20.3, 14.6]), sides, (4, 4))
     np.testing.assert_allclose(found, 77, rtol=0.01)
@@ -59,7 +61,7 @@ def test_a_flat_image_has_the_same_mean_at_every_size():
 
 @pytest.mark.parametrize("centre", [(-50.0, 3.0), (300.0, 300.0), (0.0, 30.0)], ids=str)
 def test_what_lies_outside_counts_as_empty(centre):
-    found = grid_means(PLANES, np.array(centre), np.array([[12.0, 20.0]]), (4, 4))
+    found = grid_means(STACK, np.array(centre), np.array([[12.0, 20.0]]), (4, 4))
     assert np.isfinite(found).all()
     if max(map(abs, centre)) > 40:
         np.testing.assert_allclose(found, 0, atol=1e-6)

@@ -4,31 +4,31 @@ import numpy as np
 import pytest
 
 from het_ros.tracking.features.channels import channel_stack
+from het_ros.tracking.features.frame import stacked
 from het_ros.tracking.features.window import cut_window
 from het_ros.tracking.middle.scale_filter import ScaleFilter
 
 RNG = np.random.default_rng(4)
-PLANES = tuple(RNG.integers(0, 256, (30, 40), np.uint8) for _ in range(3))
+STACK = stacked(tuple(RNG.integers(0, 256, (30, 40), np.uint8) for _ in range(3)))
 CHANNELS = ("lightness", "green_red", "blue_yellow", "gradient")
 
 
 def test_channels_are_left_as_they_are():
-    before = [plane.copy() for plane in PLANES]
+    before = STACK.copy()
     scale = ScaleFilter((12, 16), 0.1, 0.0)
-    scale.learn(PLANES, np.array([20.0, 15.0]), 1.0, 1.0)
-    scale.change(PLANES, np.array([20.0, 15.0]))
-    for plane, old in zip(PLANES, before, strict=True):
-        np.testing.assert_array_equal(plane, old)
+    scale.learn(STACK, np.array([20.0, 15.0]), 1.0, 1.0)
+    scale.change(STACK, np.array([20.0, 15.0]))
+    np.testing.assert_array_equal(STACK, before)
 
 
-def planes_of(image, box, zoom, side=48):
+def stack_of(image, box, zoom, side=48):
     """The window around a box, in which the target appears ``zoom`` times as large."""
     scale = zoom * side / np.sqrt(box.area)
     half = 1.1 * side * np.array([box.w, box.h]) / np.sqrt(box.area)
     width, height = np.ceil(2 * half).astype(int)
     x, y = np.array(box.centre) - half / scale
     window = cut_window(image, x, y, int(width), int(height), (scale, scale))
-    return channel_stack(window.pixels, CHANNELS, 2), half / 2
+    return stacked(channel_stack(window.pixels, CHANNELS, 2)), half / 2
 
 
 @pytest.mark.parametrize("zoom", [0.94, 0.96, 0.98, 1.0, 1.02, 1.04, 1.06])
@@ -39,12 +39,12 @@ def test_a_known_zoom_of_a_real_frame_is_found(sequence, name, zoom):
     image, box = frames.image(0), frames.boxes[0]
     size = 24 * np.array([box.w, box.h]) / np.sqrt(box.area)
     scale = ScaleFilter((round(size[0]), round(size[1])), 0.02, 0.0)
-    planes, centre = planes_of(image, box, 1.0)
-    scale.learn(planes, centre, 1.0, 1.0)
+    stack, centre = stack_of(image, box, 1.0)
+    scale.learn(stack, centre, 1.0, 1.0)
     growth, ratios = 1.0, []
     for _ in range(6):
-        planes, centre = planes_of(image, box, zoom / growth)
-        ratios.append(scale.change(planes, centre))
+        stack, centre = stack_of(image, box, zoom / growth)
+        ratios.append(scale.change(stack, centre))
         growth *= ratios[-1]
     assert growth == pytest.approx(zoom, abs=0.02)
     least, most = sorted((1.0, zoom))
@@ -57,19 +57,19 @@ def test_a_target_that_grows_and_shrinks_is_followed(sequence):
     image, box = frames.image(0), frames.boxes[0]
     size = 24 * np.array([box.w, box.h]) / np.sqrt(box.area)
     scale = ScaleFilter((round(size[0]), round(size[1])), 0.1, 0.0)
-    planes, centre = planes_of(image, box, 1.0)
-    scale.learn(planes, centre, 1.0, 1.0)
+    stack, centre = stack_of(image, box, 1.0)
+    scale.learn(stack, centre, 1.0, 1.0)
     growth = 1.0
     for zoom in [*np.linspace(1, 1.3, 15), *np.linspace(1.3, 0.9, 20)]:
-        planes, centre = planes_of(image, box, zoom / growth)
-        ratio = scale.change(planes, centre)
-        scale.learn(planes, centre, ratio, 1.0)
+        stack, centre = stack_of(image, box, zoom / growth)
+        ratio = scale.change(stack, centre)
+        scale.learn(stack, centre, ratio, 1.0)
         growth *= ratio
         assert growth == pytest.approx(zoom, rel=0.06)
 
 
 def test_nothing_to_see_keeps_the_size():
-    flat = (np.full((30, 40), 77, np.uint8),)
+    flat = np.full((30, 1, 40), 77, np.float32)
     scale = ScaleFilter((12, 16), 0.1, 0.0)
     scale.learn(flat, np.array([20.0, 15.0]), 1.0, 1.0)
     ratio = scale.change(flat, np.array([20.0, 15.0]))
@@ -83,9 +83,9 @@ def test_the_first_frame_is_kept(sequence, share, kept):
     image, box = frames.image(0), frames.boxes[0]
     size = 24 * np.array([box.w, box.h]) / np.sqrt(box.area)
     scale = ScaleFilter((round(size[0]), round(size[1])), 0.05, share)
-    planes, centre = planes_of(image, box, 1.0)
-    larger, _ = planes_of(image, box, 1.06)
-    scale.learn(planes, centre, 1.0, 1.0)
+    stack, centre = stack_of(image, box, 1.0)
+    larger, _ = stack_of(image, box, 1.06)
+    scale.learn(stack, centre, 1.0, 1.0)
     for _ in range(200):  # the same target at another size, taken for the present one
         scale.learn(larger, centre, 1.0, 1.0)
     off = abs(scale.change(larger, centre) - 1)
