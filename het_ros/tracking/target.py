@@ -217,8 +217,11 @@ class Target:
         """
         self._frames += 1
         step = self._motion.step(dt)
-        self._predict(image, dt, step)
-        found = self._find(image, self._search_place(image, candidates))
+        self._motion.predict(dt)
+        place = self._search_place(image, candidates)
+        proposed = self._network.begin(image, place, self._size.size) if self._network else None
+        self._follow_scene(image, step)
+        found = self._find(image, place, proposed)
         decision = self._judge(found, image, step, witness)
         self._score = decision.score
         if not decision.follow:
@@ -228,9 +231,8 @@ class Target:
         self._update_model(found, decision, image, step)
         return self.estimate(decision.score, decision.state, self._found_patches(found))
 
-    def _predict(self, image: Image, dt: float, step: float) -> None:
-        """Move the motion model on, and what is known of the scene with the camera."""
-        self._motion.predict(dt)
+    def _follow_scene(self, image: Image, step: float) -> None:
+        """Move what is known of the scene with the camera, and the velocity on."""
         self._velocity.predict(step, math.sqrt(float(self._size.size.prod())))
         shift = self._ego_motion.follow(image, step)
         if self._background:
@@ -262,15 +264,14 @@ class Target:
         places = self._layout.places(frame.features.shape[1:], cells)
         return Look(frame, image, self._motion.centre, self._size.size, cells, places, self._score)
 
-    def _find(self, image: Image, at: Floats) -> _Found:
+    def _find(self, image: Image, at: Floats, proposed: Callable[[], Proposal] | None) -> _Found:
         """All base ensembles vote; the best place is the target's if anything is."""
         self._disagreement = None
-        answer = self._network.begin(image, at, self._size.size) if self._network else None
         look = self._look(image, at)
         votes = self._vote(look)
-        if answer is None:
+        if proposed is None:
             return self._best_of(look, self._with_further(look, votes))
-        proposal = answer()
+        proposal = proposed()
         theirs = np.array(proposal.box.centre)
         if proposal.score > self._fusion.sure and not self._shows(look, theirs):
             look = self._look(image, theirs)
