@@ -32,15 +32,15 @@ PEERS_SPACE := $(CLEAN); source $(PEERS)/bin/activate; export AMENT_PREFIX_PATH=
 help: ## What there is to make
 	@grep -E '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:[^#]*## /\t/' | expand -t 14
 	@echo
-	@echo 'make run [VIDEO=file INIT=x,y,w,h | SEQUENCE=folder] [OUT=out/run]'
-	@echo 'make operator [VIDEO=file | SEQUENCE=folder] [OPERATOR="-o host:=0.0.0.0"]; make run WEB=1'
+	@echo 'make run [VIDEO=file INIT=x,y,w,h | SEQUENCE=folder] [NETWORK=folder] [OUT=out/run]'
+	@echo 'make operator [VIDEO=file | SEQUENCE=folder] [NETWORK=folder] [OPERATOR="-o host:=0.0.0.0"]; make run WEB=1'
 	@echo 'make evaluate DATA=folder [OUT=out/evaluate] [TRACKERS=het,csrt] [SEEDS=3]'
 	@echo '     [PROTOCOL=ope|tre|sre|passes|realtime|restart] [SEQUENCES=a,b] [SCHEDULER=tcp://host:8786]'
 	@echo '     [MODELS=folder] [BOXES="NAME=folder ..."]'
 	@echo 'make compare A=folder B=folder[:tracker] [OUT=folder] [DATA=folder]'
-	@echo 'make scenes [OUT=out/scenes] [SCENES="--seeds 20 --stories lookalike_crosses"]'
+	@echo 'make scenes [OUT=out/scenes] [NETWORK=folder] [SCENES="--seeds 20 --stories lookalike_crosses"]'
 	@echo 'make fit DATA=folder [MODELS=folder] [SEQUENCES=a,b] [SEEDS=3] [FIT="--off 1 --again"]'
-	@echo 'make bench [OUT=out/bench] [DATA=folder]'
+	@echo 'make bench [OUT=out/bench] [DATA=folder] [MODELS=folder]'
 	@echo 'make fuzz [MINUTES=10] [OUT=out/fuzz]'
 	@echo 'make soak [MINUTES=60] [OUT=out/soak] [SOAK="--size 1280x720 -p seed:=3"]'
 
@@ -88,7 +88,9 @@ $(BUILT): $(VENV)/.ready package.xml setup.py setup.cfg $(SOURCES)
 VIDEO ?=
 INIT ?=
 SEQUENCE ?=
-FOOTAGE = $(if $(VIDEO),--video '$(VIDEO)') $(if $(SEQUENCE),--sequence '$(SEQUENCE)')
+NETWORK ?=
+FOOTAGE = $(if $(VIDEO),--video '$(VIDEO)') $(if $(SEQUENCE),--sequence '$(SEQUENCE)') \
+	$(if $(NETWORK),--network '$(NETWORK)')
 
 run: OUT ?= out/run
 run: $(BUILT) ## Follow the target of the recorded bag, or of your own footage; look into out/run
@@ -155,7 +157,8 @@ compare: $(BUILT) ## Judge a change: paired differences of the results folders A
 
 scenes: OUT ?= out/scenes
 scenes: $(BUILT) ## Is it honest? Rendered stories with exact truth: hidden, gone, look-alikes
-	@$(WORKSPACE); python -m het_ros.tools.scenes --out '$(OUT)/scenes.json' $(SCENES)
+	@$(WORKSPACE); python -m het_ros.tools.scenes --out '$(OUT)/scenes.json' \
+		$(if $(NETWORK),--network '$(NETWORK)') $(SCENES)
 
 fit: OUT ?= out/fit
 fit: $(VENV)/.ready ## Fit the tracker's calibration to DATA=folder; writes het_ros/tracking/fitted.py
@@ -165,7 +168,8 @@ fit: $(VENV)/.ready ## Fit the tracker's calibration to DATA=folder; writes het_
 
 bench: OUT ?= out/bench
 bench: $(BUILT) $(PEERS)/.ready ## Speed of the core and of the node, as ratios to the peers
-	@$(PEERS_SPACE); python -m het_ros.bench.cli --out '$(OUT)' $(if $(DATA),--data '$(DATA)') $(BENCH)
+	@$(PEERS_SPACE); python -m het_ros.bench.cli --out '$(OUT)' $(if $(DATA),--data '$(DATA)') \
+		$(if $(MODELS),--models '$(MODELS)') $(BENCH)
 
 docs: $(BUILT) ## Write what is generated: parameters, and the map of the imports
 	@$(WORKSPACE); python -m het_ros.ros.reference .; python test/pages/import_map.py

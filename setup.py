@@ -73,6 +73,7 @@ EXTRAS = {
         "catkin-pkg>=1.0",
         "rosdep>=0.22",
         "distributed>=2023.1",
+        "onnx>=1.16",  # writes a tiny network
         "playwright>=1.40",  # drives the system's Chromium; brings none
         *SCORING,
     ],

@@ -31,8 +31,8 @@ else:
 
 # What a machine with apt's ROS may be without: tests that need one of these are skipped by name.
 OPTIONAL = {
-    *("av", "distributed", "hypothesis", "jinja2", "joblib", "matplotlib", "rclpy", "rosbags"),
-    *("threadpoolctl", "tqdm", "yaml"),
+    *("av", "distributed", "hypothesis", "jinja2", "joblib", "matplotlib", "onnx", "rclpy"),
+    *("rosbags", "threadpoolctl", "tqdm", "yaml"),
 }
 
 # The Clip of NanoTrack's heads has its limits as inputs, which older ones do not know.
@@ -80,6 +80,17 @@ def models() -> Path:
     if not READS_NETWORKS:
         pytest.skip(f"OpenCV {cv2.__version__} cannot read them: 4.7 can")
     return folder
+
+
+@pytest.fixture(scope="session")
+def made_network(tmp_path_factory) -> Path:
+    """The folder of a tiny network with the inputs and outputs of NanoTrack v3."""
+    pytest.importorskip("onnx", reason="onnx, which writes the network, is not installed")
+    if not READS_NETWORKS:
+        pytest.skip(f"OpenCV {cv2.__version__} cannot read it: 4.7 can")
+    from made_network import write_network
+
+    return write_network(tmp_path_factory.mktemp("models") / "nanotrackv3")
 
 
 @pytest.fixture(scope="session")

@@ -34,6 +34,7 @@ EXAMPLE = """\
 examples:
   ros2 run het_ros bench --data ../shared/sequences --out out/bench --full
   ros2 run het_ros bench --out out/try --quick --parts core,stages
+  ros2 run het_ros bench --out out/networks --parts core --models ../shared/models
 """
 
 
@@ -67,6 +68,7 @@ def parser() -> argparse.ArgumentParser:
     p.add_argument(
         "--data", type=Path, help="folder of real sequences (OTB, VOT); without: a rendered street"
     )
+    p.add_argument("--models", type=Path, help="folder of the networks' files, else left out")
     p.add_argument("--full", action="store_true", help="60 s of 1080p at 30 frames/s")
     p.add_argument("--quick", action="store_true", help="few frames and small images, to try it")
     p.add_argument("--frames", type=_positive, help="timed on each sequence (40; quick: 5)")
@@ -91,7 +93,9 @@ def measured(options: argparse.Namespace) -> dict[str, Any]:
     seconds = options.seconds or (2 if quick else 10)
     cases = tuple(name for name in options.cases.split(",") if name)
     run: dict[str, Callable[[], dict[str, Any]]] = {
-        "core": lambda: core(sequences_for(options.data, options.out, frames), frames, quiet),
+        "core": lambda: core(
+            sequences_for(options.data, options.out, frames), frames, quiet, options.models
+        ),
         "stages": lambda: _stages(20 if quick else 200),
         "scaling": lambda: scaling(cases_of(quick), 20 if quick else 150, quiet),
         "node": lambda: node(seconds, options.full, cases, quiet),

@@ -6,7 +6,7 @@ from __future__ import annotations
 
 import itertools
 import tempfile
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -24,19 +24,23 @@ from het_ros.evaluation.opencv_peers import PEERS, available
 from het_ros.evaluation.readers import read_sequences
 from het_ros.evaluation.sequences import Frames, Sequence
 from het_ros.evaluation.timing import time_trackers
-from het_ros.evaluation.trackers import tracker_spec
+from het_ros.evaluation.trackers import WITH_NETWORK, tracker_spec
 from het_ros.scene import Scene, SceneConfig
+from het_ros.tracking.bottom.second_thread import processors
 from het_ros.tracking.box import Box
 from het_ros.tracking.config import TrackerConfig
 from het_ros.tracking.tracker import HierarchicalEnsembleTracker
 
 OURS = "het"
 PAPER = "het-paper"
+ALONE = "nanotrack-v3"  # the network of WITH_NETWORK, and nothing else
+TWO_THREADS = f"{WITH_NETWORK} on two threads"
 COMPARED = ("csrt", "kcf", "mil", "boosting", "medianflow", "mosse")
 WARM_UP = 2  # updates that are not counted: they make the buffers
 RENDERED = "rendered street"
 
-Times = Mapping[tuple[str, str], NDArray[np.float64]]
+Floats = NDArray[np.float64]
+Times = Mapping[tuple[str, str], Floats]
 
 
 def sequences_for(data: Path | None, out: Path, frames: int) -> list[Sequence]:
@@ -60,16 +64,26 @@ def sequences_for(data: Path | None, out: Path, frames: int) -> list[Sequence]:
     return [Sequence(RENDERED, Frames(tuple(files), scene.config.rate), np.array(boxes))]
 
 
-def core(sequences: list[Sequence], frames: int, quiet: bool = False) -> dict[str, Any]:
+def core(
+    sequences: list[Sequence], frames: int, quiet: bool = False, models: Path | None = None
+) -> dict[str, Any]:
     """Time this tracker, the paper's configuration and every peer that this OpenCV has.
 
     Args:
         sequences: what they follow.
         frames: updates timed on each sequence.
         quiet: no progress bar.
+        models: folder of the networks' files, with which this tracker is timed as well, on one
+            thread and on two, and the network alone; None leaves them out.
+
+    Raises:
+        ValueError: the folder has no such network.
     """
-    names = [OURS, PAPER, *(name for name in COMPARED if name in available())]
-    specs = [tracker_spec(name) for name in names]
+    two = f"{TWO_THREADS}@{WITH_NETWORK}:network_thread=true"
+    with_network = (WITH_NETWORK, two, ALONE) if models else ()
+    peers = (name for name in COMPARED if name in available())
+    specs = [tracker_spec(name, models) for name in (OURS, PAPER, *with_network, *peers)]
+    names = [spec.name for spec in specs]
     # A place of its own: what an earlier run measured is of another machine or another day.
     with tempfile.TemporaryDirectory() as folder:
         timing = time_trackers(specs, sequences, frames, Path(folder), quiet=quiet)
@@ -79,8 +93,19 @@ def core(sequences: list[Sequence], frames: int, quiet: bool = False) -> dict[st
     box = middle(footage, TARGET_IN_IMAGES)
     found |= _beside_the_floor(TrackerConfig(), footage, box)
     found["frame_allocations_mb"] = peak_of_a_frame(TrackerConfig(), footage, box)
-    found |= {"frames": frames, "load": timing.load}
+    found |= {"frames": frames, "load": timing.load, "processors": processors()}
     return found
+
+
+def _network_figures(of: Callable[[str], list[Floats]], csrt: list[Floats]) -> dict[str, float]:
+    medians = (
+        [float(np.nanmedian(times)) for times in of(name)] for name in (TWO_THREADS, OURS, ALONE)
+    )
+    over = [two / max(ours, alone) for two, ours, alone in zip(*medians, strict=True)]
+    return {
+        "speed_over_csrt": speed_over(of(WITH_NETWORK), csrt),
+        "time_over_slower": float(np.median(over)),
+    }
 
 
 def _beside_the_floor(config: TrackerConfig, footage: Footage, box: Box) -> dict[str, Any]:
@@ -110,10 +135,12 @@ def summary(seconds: Times, names: list[str], sequences: list[str]) -> dict[str,
         ``trackers``: percentiles of all updates of each, and how many times faster this tracker
         is; ``sequences``: median ms by sequence and tracker; the percentiles of this tracker;
         ``p99_over_p50`` over all its updates, and ``p99_over_p50_by_sequence``, the median of
-        what it is on each sequence alone; ``speed_over_csrt`` and ``paper_speed_over_csrt``.
+        what it is on each sequence alone; ``speed_over_csrt`` and ``paper_speed_over_csrt``;
+        ``network``, where it was timed: ``speed_over_csrt`` of one thread, and of two their
+        ``time_over_slower``, that of this tracker or of the network alone.
     """
 
-    def of(name: str) -> list[NDArray[np.float64]]:
+    def of(name: str) -> list[Floats]:
         return [seconds[name, sequence] for sequence in sequences]
 
     ours, paper = of(OURS), of(PAPER)
@@ -121,8 +148,10 @@ def summary(seconds: Times, names: list[str], sequences: list[str]) -> dict[str,
     spread = [percentiles(times) for times in ours]
     nothing = [np.array([np.nan])] * len(sequences)
     csrt = of("csrt") if "csrt" in names else nothing
+    network = _network_figures(of, csrt) if WITH_NETWORK in names else {}
     return {
         **own,
+        "network": network,
         "p99_over_p50": own["p99_ms"] / own["p50_ms"],
         "p99_over_p50_by_sequence": float(np.median([s["p99_ms"] / s["p50_ms"] for s in spread])),
         "speed_over_csrt": speed_over(ours, csrt),

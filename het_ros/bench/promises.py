@@ -38,6 +38,12 @@ class Promise:
 PROMISES = (
     Promise("speed over CSRT, default", "core.speed_over_csrt", 3, least=True),
     Promise("speed over CSRT, the paper's configuration", "core.paper_speed_over_csrt", 5, True),
+    Promise("speed over CSRT, with a network", "core.network.speed_over_csrt", 2.5, least=True),
+    Promise(
+        "two threads: time over that of the slower of network and the rest",
+        "core.network.time_over_slower",
+        1.15,
+    ),
     Promise("p99 over p50 of a frame", "core.p99_over_p50", 2),
     Promise("smallest to largest target, cost by a factor of", "scaling.target_factor", 1.5),
     Promise("640x480 to 3840x2160, cost by a factor of", "scaling.image_factor", 1.5),

@@ -108,6 +108,7 @@ def _core(core: Bench) -> list[str]:
         "of the ratios of median times. On a sequence alone het's p99 is "
         f"{core['p99_over_p50_by_sequence']:.2f} times its p50 (median of the sequences)."
         + (f" Not in this OpenCV: {absent}." if absent else ""),
+        _network(core),
         f"Floor: window {floor['window_ms']:.3f} ms, integral images "
         f"{floor['integrals_ms']:.3f} ms, product of votes and features "
         f"{floor['product_ms']:.3f} ms; a frame, timed in turns with them, takes "
@@ -117,6 +118,16 @@ def _core(core: Bench) -> list[str]:
         f"{core['ratio_to_floor_with_learning']:.1f} times the floor with it. A frame asks for "
         f"{core['frame_allocations_mb']:.1f} MB of memory at most at a time.",
     ]  # fmt: skip
+
+
+def _network(core: Bench) -> str:
+    if not (figures := core.get("network")):
+        return "het-network is left out: name the networks' folder, `make bench MODELS=folder`."
+    return (
+        f"With a network it is {figures['speed_over_csrt']:.2f} times as fast as CSRT. With the "
+        f"network in a second thread ({core['processors']} processors may be used) a frame takes "
+        f"{figures['time_over_slower']:.2f} times as long as the slower of het and nanotrack-v3."
+    )
 
 
 def _stages(stages: Bench) -> list[str]:

@@ -139,7 +139,11 @@ def tracking_source() -> str:
     return digest.hexdigest()[:16]
 
 
-BASES: dict[str, type[Config]] = {"het": TrackerConfig, "het-paper": PaperConfig}
+# Compared is what one thread of each can do.
+BASES: dict[str, Config] = {
+    "het": TrackerConfig(network_thread=False),
+    "het-paper": PaperConfig(),
+}
 WITH_NETWORK = "het-network"  # needs the folder of the networks' files
 DEFAULT = ("het", "het-paper", *opencv_peers.PEERS)
 
@@ -204,8 +208,8 @@ def _base(name: str, models: Path | None) -> Config:
     """The configuration of one of ours, ``het-network`` with NanoTrack v3 of a folder."""
     if name == WITH_NETWORK:
         backbone, *_ = network_peers.files_of("nanotrack-v3", models)
-        return TrackerConfig(network=str(backbone.parent))
-    return BASES[name]()
+        return TrackerConfig(network=str(backbone.parent), network_thread=False)
+    return BASES[name]
 
 
 def _identity(seed: int) -> Identity:

@@ -20,7 +20,7 @@ from rclpy.executors import SingleThreadedExecutor
 from rclpy.node import Node
 from rclpy.signals import SignalHandlerOptions
 
-from het_ros.tools.arguments import add_image_topic, add_parameters, command
+from het_ros.tools.arguments import add_image_topic, add_network, add_parameters, command
 from het_ros.tools.bag_messages import TRUTH_BOX_TOPIC
 from het_ros.tools.bag_reader import BagError, BagReader, Recorded, header_stamp
 from het_ros.tools.footage import open_footage
@@ -49,6 +49,7 @@ EXAMPLE = """examples:
   python -m het_ros.operator.demo
   python -m het_ros.operator.demo --video walk.mp4
   python -m het_ros.operator.demo --sequence sequences/Crossing -o host:=0.0.0.0
+  python -m het_ros.operator.demo --network models/nanotrackv3
 """
 
 
@@ -177,8 +178,12 @@ def _parse(argv: Sequence[str] | None) -> argparse.Namespace:
         help="a parameter of the operator: host:=0.0.0.0",
     )  # fmt: skip
     add_image_topic(parser)
+    add_network(parser)
     add_parameters(parser)
-    return parser.parse_args(argv)
+    options = parser.parse_args(argv)
+    if options.network:
+        options.parameters.append(f"network:={options.network}")
+    return options
 
 
 def main(argv: Sequence[str] | None = None) -> int:

@@ -58,6 +58,28 @@ def add_parameters(parser: Any) -> None:
     )  # fmt: skip
 
 
+def add_network(parser: Any) -> None:
+    """Add --network: the folder of a network that this OpenCV can read, or ""."""
+    parser.add_argument(
+        "--network", type=network_folder, default="", metavar="FOLDER",
+        help="of a NanoTrack network, one more base ensemble (none)",
+    )  # fmt: skip
+
+
+def network_folder(text: str) -> str:
+    """The absolute path of a network's folder from a command line; "" for ""."""
+    from het_ros.tracking.bottom.siamese import Siamese
+
+    if not text:
+        return ""
+    folder = Path(text).expanduser().absolute()
+    try:
+        Siamese.read(folder)
+    except ValueError as error:
+        raise argparse.ArgumentTypeError(str(error)) from None
+    return str(folder)
+
+
 def parse_box(text: str) -> Box:
     """A box from "x,y,w,h" on a command line."""
     try:

@@ -3,12 +3,12 @@
 """A rendered robot that follows a rendered figure with the real tracker and follower nodes.
 
 ``ros2 run het_ros closed_loop --out out/loop`` renders what the robot's camera sees, feeds
-the tracker node, lets the follower node drive, moves the robot, and so on for a minute.
+the tracker node, lets the follower node drive, moves the robot, and so on for a minute. It ends
+with 1 if the figure was ever out of view.
 """
 
 from __future__ import annotations
 
-import argparse
 import math
 import os
 import sys
@@ -31,6 +31,8 @@ from het_ros.ros.messages import box_from_polygon, header_of, polygon_from_box, 
 from het_ros.ros.status import status_values
 from het_ros.ros.tracker_node import TrackerNode
 from het_ros.scene import CameraState, Frame, Scene, SceneConfig
+from het_ros.scene.honesty import CONFIDENT
+from het_ros.tools.arguments import add_network, command
 from het_ros.tools.drawing import annotate, write_words
 from het_ros.tools.results import Row
 from het_ros.tools.video import VideoWriter
@@ -42,6 +44,10 @@ LOST_AFTER = 4.0  # s: the robot waits so long for who went behind a column
 FASTEST = 1.2  # m/s: a robot slower than who it follows loses them
 HIDDEN, SEEN = 0.02, 0.5  # visible part of the figure
 OVERLAP = 0.3  # IoU from which on a box is on the figure
+EXAMPLE = """examples:
+  ros2 run het_ros closed_loop --out out/loop --seed 2
+  ros2 run het_ros closed_loop --network models/nanotrackv3 --without-depth
+"""
 START = 1_000_000_000  # ns, stamp of the first image: 0 would mean "no stamp"
 
 
@@ -76,16 +82,26 @@ class Loop:
         scene: what is rendered.
         distance: that the follower keeps, m.
         context: of the nodes.
+        network: the tracker's parameter.
+        depth: whether the tracker gets depth images.
     """
 
-    def __init__(self, scene: Scene, distance: float, context: Context) -> None:
+    def __init__(
+        self,
+        scene: Scene,
+        distance: float,
+        context: Context,
+        network: str = "",
+        depth: bool = True,
+    ) -> None:
         self.scene = scene
+        self._with_depth = depth
         self.robot = self._facing_the_target()
         self._time = 0.0
         self._outputs: dict[str, Any] = {}
         self.tracker = TrackerNode(
             context=context,
-            config=TrackerConfig(lost_after=LOST_AFTER),
+            config=TrackerConfig(lost_after=LOST_AFTER, network=network),
             tap=lambda topic, message: self._outputs.update({topic: message}),
         )
         self._follower = FollowerNode(
@@ -113,7 +129,8 @@ class Loop:
         frame = self.scene.render(self._time, self.robot, index)
         header = header_of(START + round(self._time * 1e9), "camera")
         self.tracker.space.on_camera_info(self._camera_info(header))
-        self.tracker.space.on_depth(self._depth(frame, header))
+        if self._with_depth:
+            self.tracker.space.on_depth(self._depth(frame, header))
         self._outputs.clear()
         self.tracker.on_image(debug_message(frame.image, header))
         if index == 0 and frame.box is not None:
@@ -210,21 +227,20 @@ class Loop:
 
 def main(arguments: list[str] | None = None) -> int:
     """Run the loop, write the video, print how it went; 1 when the figure was lost."""
-    parser = argparse.ArgumentParser(
-        prog="closed_loop",
-        description="Let a rendered robot follow a rendered figure with the real nodes.",
-        epilog="example: ros2 run het_ros closed_loop --out out/loop --seed 2",
-    )
+    parser = command("closed_loop", __doc__, EXAMPLE)
     parser.add_argument("--out", type=Path, default=Path("out/loop"), help="folder (out/loop)")
     parser.add_argument("--seed", type=int, default=0, help="of the scene (0)")
     parser.add_argument("--distance", type=float, default=4.0, help="to keep, m (4)")
+    parser.add_argument("--without-depth", action="store_true", help="the camera measures none")
+    add_network(parser)
     options = parser.parse_args(arguments)
     options.out.mkdir(parents=True, exist_ok=True)
     os.environ["ROS_AUTOMATIC_DISCOVERY_RANGE"] = "OFF"
     scene = Scene(SceneConfig(story="patrol", seed=options.seed))
     context = Context()
     rclpy.init(context=context)
-    loop = Loop(scene, options.distance, context)
+    depth = not options.without_depth
+    loop = Loop(scene, options.distance, context, options.network, depth)
     moments: list[Moment] = []
     try:
         with VideoWriter(options.out / "loop.mp4", scene.config.rate) as video:
@@ -244,12 +260,13 @@ def _figures(moments: list[Moment], rate: float) -> list[str]:
     hidden = sum(moment.frame.visible < HIDDEN for moment in moments) / rate
     seen = [moment for moment in moments if moment.frame.visible >= SEEN]
     tracked = np.mean([m.row.state is State.TRACKING and _on_it(m) for m in seen])
-    wrong = sum(m.row.state is State.TRACKING and not _on_it(m) for m in moments)
+    beside = [m for m in moments if m.row.state is State.TRACKING and not _on_it(m)]
+    confident = sum(m.row.score > CONFIDENT for m in beside)
     away = [moment.away for moment in moments]
     return [
         f"in view   {in_view:.1%} of {len(moments)} frames; wholly hidden for {hidden:.1f} s",
         f"tracked   {tracked:.1%} of the frames that show half of the figure; "
-        f"TRACKING beside it in {wrong}",
+        f"TRACKING beside it in {len(beside)}, confident in {confident}",
         f"distance  {np.mean(away):.2f} m (mean), {min(away):.2f} to {max(away):.2f} m; "
         f"to the column at least {min(moment.clearance for moment in moments):.2f} m",
         f"commands  {_roughness(moments, 0):.4f} m/s and {_roughness(moments, 1):.4f} rad/s, root "

@@ -19,6 +19,7 @@ from het_ros.tools.arguments import (
     INTERRUPTED,
     add_image_topic,
     add_init,
+    add_network,
     add_parameters,
     command,
 )
@@ -47,6 +48,7 @@ EXAMPLE = """examples:
   ros2 run het_ros run --sequence sequences/Crossing
   ros2 run het_ros run --video vtest.avi --init 258,219,33,89
   ros2 run het_ros run --bag bags/follow_walk -p seed:=3
+  ros2 run het_ros run --network models/nanotrackv3
 """
 
 
@@ -130,8 +132,11 @@ def _parse(argv: Sequence[str] | None) -> argparse.Namespace:
     parser.add_argument("--rate", type=float, default=1.0, help="2 plays twice as fast")
     add_image_topic(parser)
     parser.add_argument("--tracker", type=Path, help="executable (default: the installed one)")
+    add_network(parser)
     add_parameters(parser)
     options = parser.parse_args(argv)
+    if options.network:
+        options.parameters.append(f"network:={options.network}")
     if options.video and not options.init:
         parser.error("--video needs --init x,y,w,h: the target in its first frame, px")
     return options

@@ -27,7 +27,7 @@ from het_ros.ros.threads import one_thread
 from het_ros.scene import STORIES, SceneConfig
 from het_ros.scene.honesty import Honesty, followed, honesty
 from het_ros.tools import scene_velocity
-from het_ros.tools.arguments import command
+from het_ros.tools.arguments import add_network, command
 from het_ros.tracking.config import TrackerConfig
 
 HIDING = ("hidden_500ms", "hidden_1s", "hidden_2s", "leaves_and_returns")
@@ -43,15 +43,16 @@ EXAMPLE = """example:
   ros2 run het_ros scenes --seeds 5
   ros2 run het_ros scenes --stories lookalike_at_column,lookalike_crosses --seeds 20
   ros2 run het_ros scenes --seeds 3 --gray
+  ros2 run het_ros scenes --network models/nanotrackv3
 """
 
 
 def judged(
-    config: SceneConfig, tracker_seed: int = 0, gray: bool = False
+    config: SceneConfig, tracker_seed: int = 0, gray: bool = False, network: str = ""
 ) -> tuple[Honesty, dict[str, Any] | None]:
     """Follow one scene; its honesty, and how good its velocity was where that can be said."""
     one_thread()  # scenes run side by side
-    moments = followed(config, TrackerConfig(seed=tracker_seed), gray)
+    moments = followed(config, TrackerConfig(seed=tracker_seed, network=network), gray)
     return honesty(moments, config.rate), scene_velocity.velocity_of(moments, config.rate)
 
 
@@ -92,6 +93,7 @@ def main(argv: list[str] | None = None) -> int:
     p.add_argument("--first-seed", type=int, default=0, help="the first of them (0)")
     p.add_argument("--tracker-seed", type=int, default=0, help="seed of the tracker (0)")
     p.add_argument("--gray", action="store_true", help="as a camera without colour sees them")
+    add_network(p)
     p.add_argument("--jobs", type=int, help="processes (as many as there are processors)")
     p.add_argument("--out", type=Path, help="also write every scene's figures here, JSON")
     options = p.parse_args(argv)
@@ -111,7 +113,12 @@ def main(argv: list[str] | None = None) -> int:
     ]
     # A fork of a process that has OpenCV's or ROS's threads may hang in their locks.
     with ProcessPoolExecutor(options.jobs, mp_context=get_context("spawn")) as pool:
-        judge = partial(judged, tracker_seed=options.tracker_seed, gray=options.gray)
+        judge = partial(
+            judged,
+            tracker_seed=options.tracker_seed,
+            gray=options.gray,
+            network=options.network,
+        )
         found = list(tqdm(pool.map(judge, configs), total=len(configs), unit="scene"))
     results = [(config, honest) for config, (honest, _) in zip(configs, found, strict=True)]
     moved = [moves for _, moves in found]

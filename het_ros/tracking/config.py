@@ -72,6 +72,9 @@ class TrackerConfig:
     network: str = parameter(
         "", "folder with a NanoTrack network (two ONNX files); empty is without"
     )
+    network_thread: bool = parameter(
+        True, "the network works in a second thread where it may use a second processor"
+    )
     # Size.
     scale_rate: float = parameter(0.04, "rate of the scale filter", low=0, high=1)
     growth_limit: float = parameter(

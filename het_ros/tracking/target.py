@@ -170,8 +170,9 @@ class Target:
             config.longest_dt,
         )
         self._velocity = VelocityFilter(np.array(box.centre), side)
-        self._network = NetworkEnsemble(Path(config.network)) if config.network else None
-        if self._network:
+        self._network: NetworkEnsemble | None = None
+        if config.network:
+            self._network = NetworkEnsemble(Path(config.network), config.network_thread)
             self._network.start(image, box)
         self._ego_motion = EgoMotion(image)
         self._background = Background(image.shape, side) if config.background else None
@@ -216,8 +217,11 @@ class Target:
         """
         self._frames += 1
         step = self._motion.step(dt)
-        self._predict(image, dt, step)
-        found = self._find(image, self._search_place(image, candidates))
+        self._motion.predict(dt)
+        place = self._search_place(image, candidates)
+        proposed = self._network.begin(image, place, self._size.size) if self._network else None
+        self._follow_scene(image, step)
+        found = self._find(image, place, proposed)
         decision = self._judge(found, image, step, witness)
         self._score = decision.score
         if not decision.follow:
@@ -227,9 +231,8 @@ class Target:
         self._update_model(found, decision, image, step)
         return self.estimate(decision.score, decision.state, self._found_patches(found))
 
-    def _predict(self, image: Image, dt: float, step: float) -> None:
-        """Move the motion model on, and what is known of the scene with the camera."""
-        self._motion.predict(dt)
+    def _follow_scene(self, image: Image, step: float) -> None:
+        """Move what is known of the scene with the camera, and the velocity on."""
         self._velocity.predict(step, math.sqrt(float(self._size.size.prod())))
         shift = self._ego_motion.follow(image, step)
         if self._background:
@@ -261,19 +264,22 @@ class Target:
         places = self._layout.places(frame.features.shape[1:], cells)
         return Look(frame, image, self._motion.centre, self._size.size, cells, places, self._score)
 
-    def _find(self, image: Image, at: Floats) -> _Found:
+    def _find(self, image: Image, at: Floats, proposed: Callable[[], Proposal] | None) -> _Found:
         """All base ensembles vote; the best place is the target's if anything is."""
         self._disagreement = None
         look = self._look(image, at)
-        if self._network is None:
-            return self._best_of(look, self._vote(look))
-        proposal = self._network.propose(look, at)
+        votes = self._vote(look)
+        if proposed is None:
+            return self._best_of(look, self._with_further(look, votes))
+        proposal = proposed()
         theirs = np.array(proposal.box.centre)
         if proposal.score > self._fusion.sure and not self._shows(look, theirs):
             look = self._look(image, theirs)
-        return self._fused(look, self._vote(look), proposal)
+            votes = self._vote(look)
+        return self._fused(look, self._with_further(look, votes), proposal)
 
     def _vote(self, look: Look) -> _Votes:
+        """The votes of our own ensembles, which may be asked more than once a frame."""
         share = self._config.colour_weight
         template, colour = self._patches.vote(look), self._colour.vote(look)
         response = (1 - share) * template + share * colour
@@ -281,11 +287,16 @@ class Target:
         if near is not None:
             # A factor: what slides over the target moves smoothly too, but does not look like it.
             response = response * (1 + self._config.flow_weight * near)
+        return _Votes(template, colour, response)
+
+    def _with_further(self, look: Look, votes: _Votes) -> _Votes:
+        """The votes with those of the ensembles that were given, which are asked once a frame."""
+        response = votes.response
         for ensemble in self._further:
             gain = ensemble.vote(look)
             if gain is not None:
                 response = response * (1 + gain)
-        return _Votes(template, colour, response)
+        return replace(votes, response=response)
 
     def _best_of(self, look: Look, votes: _Votes) -> _Found:
         peak = best_place(votes.response)

@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from het_ros.bench import core as bench_core
 from het_ros.bench.allocations import peak_of_a_frame
 from het_ros.bench.core import core, sequences_for
 from het_ros.bench.floor import floor, sizes_of
@@ -129,6 +130,25 @@ def test_core_without_a_folder_is_measured_on_rendered_frames(tmp_path):
     assert found["p99_over_p50"] >= 1
     assert found["trackers"]["het"]["het_is_faster_by"] == 1
     assert set(found["absent_peers"]).isdisjoint(found["trackers"])
+
+
+def test_core_with_a_folder_of_networks_times_them_on_one_thread_and_on_two(
+    tmp_path, made_network, monkeypatch
+):
+    monkeypatch.setattr(bench_core, "COMPARED", ("csrt",))
+    frames = 4
+    sequences = sequences_for(None, tmp_path, frames)
+    found = core(sequences, frames, quiet=True, models=made_network.parent)
+    rows = found["trackers"]
+    assert {"het-network", "het-network on two threads", "nanotrack-v3"} <= set(rows)
+    assert all(figures["p50_ms"] > 0 for figures in rows.values())
+    assert found["network"]["time_over_slower"] > 0
+    assert found["processors"] >= 1
+
+
+def test_a_folder_without_networks_is_refused(tmp_path):
+    with pytest.raises(ValueError, match="has no network for nanotrack-v3"):
+        core([], 1, quiet=True, models=tmp_path)
 
 
 def test_usage_of_this_process():

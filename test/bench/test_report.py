@@ -55,20 +55,32 @@ def test_the_report_tells_what_is_kept_and_what_is_not(tmp_path):
     assert "| p99 over p50 of a frame | 2.50 | at most 2 | **no** |" in text
     assert "| frames dropped at 1080p, 30 frames/s | 1 | at most 0 | **no** |" in text
     assert "Not in this OpenCV: kcf." in text
+    assert "het-network is left out: name the networks' folder" in text
     assert "| `numpy` | 0.10 | 9 |" in text
     for name in ("core", "stages", "scaling", "node"):
         assert f"![{name}]({name}.png)" in text
         assert (tmp_path / f"{name}.png").read_bytes().startswith(b"\x89PNG")
 
 
+def test_the_report_tells_what_a_network_costs():
+    bench = a_bench()
+    bench["core"] |= {
+        "network": {"speed_over_csrt": 2.61, "time_over_slower": 1.25}, "processors": 2,
+    }  # fmt: skip
+    text = report.text(bench)
+    assert "| speed over CSRT, with a network | 2.61 | at least 2.5 | yes |" in text
+    assert "With a network it is 2.61 times as fast as CSRT." in text
+    assert "(2 processors may be used) a frame takes 1.25 times as long" in text
+
+
 def test_the_documentation_is_written_in_its_place_only(tmp_path):
     page = tmp_path / "PERFORMANCE.md"
-    page.write_text("# Cost\n<!-- bench -->\nold\n<!-- /bench -->\nafter\n")
+    page.write_text("# Cost\n<!-- bench -->\nearlier\n<!-- /bench -->\nafter\n")
     report.update(page, a_bench())
     text = page.read_text()
     assert text.startswith("# Cost\n<!-- bench -->\n2026-01-02;")
     assert text.endswith("\n\n<!-- /bench -->\nafter\n")
-    assert "old" not in text
+    assert "earlier" not in text
 
 
 def test_a_page_without_a_place_is_refused(tmp_path):

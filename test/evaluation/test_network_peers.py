@@ -33,7 +33,7 @@ def test_ours_with_a_network_is_left_out_where_its_files_are_not(tmp_path):
 def test_ours_with_a_network_is_the_default_with_nanotrack_v3(models):
     spec = tracker_spec("het-network:seed=3", models)
     folder = network_peers.files_of("nanotrack-v3", models)[0].parent
-    assert spec.build.args[0] == TrackerConfig(network=str(folder), seed=3)
+    assert spec.build.args[0] == TrackerConfig(network=str(folder), network_thread=False, seed=3)
 
 
 @pytest.mark.parametrize("name", (*NAMES, "het-network"))

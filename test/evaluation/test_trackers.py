@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 import json
 import pickle
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -45,14 +46,18 @@ def test_values_take_the_type_of_their_default(default, text, value):
     assert (found, type(found)) == (value, type(value))
 
 
+ONE_THREAD = TrackerConfig(network_thread=False)
+
+
 def config_of(name):
     return tracker_spec(name).build.args[0]
 
 
 def test_het_is_the_default_configuration_and_het_paper_the_papers():
-    assert config_of("het") == TrackerConfig()
+    assert config_of("het") == ONE_THREAD
     assert config_of("het-paper") == PaperConfig()
-    assert config_of("het:sub_patches=5,seed=3") == TrackerConfig(sub_patches=5, seed=3)
+    assert config_of("het:sub_patches=5,seed=3") == replace(ONE_THREAD, sub_patches=5, seed=3)
+    assert config_of("het:network_thread=true") == TrackerConfig()
     assert config_of("het-paper:sub_patches=7") == PaperConfig(sub_patches=7)
 
 
@@ -69,7 +74,7 @@ def test_a_configuration_may_be_a_file(tmp_path, file, text):
     (tmp_path / file).write_text(text)
     spec = tracker_spec(f"mine@het:{tmp_path / file}")
     assert spec.name == "mine"
-    assert spec.build.args[0] == TrackerConfig(sub_patches=5, seed=3)
+    assert spec.build.args[0] == replace(ONE_THREAD, sub_patches=5, seed=3)
 
 
 @pytest.mark.parametrize(

@@ -11,6 +11,7 @@ from rclpy.context import Context
 from het_ros import State
 from het_ros.scene import Scene, SceneConfig
 from het_ros.tools.closed_loop import Loop
+from het_ros.tracking.bottom.network import NetworkEnsemble
 
 
 @pytest.fixture
@@ -21,9 +22,9 @@ def loops(monkeypatch):
     rclpy.init(context=context)
     made = []
 
-    def make(seed: int = 0) -> Loop:
+    def make(seed: int = 0, **more) -> Loop:
         scene = Scene(SceneConfig(story="patrol", seed=seed, width=320, height=240, rate=15.0))
-        made.append(Loop(scene, 4.0, context))
+        made.append(Loop(scene, 4.0, context, **more))
         return made[-1]
 
     yield make
@@ -56,6 +57,20 @@ def test_the_same_seed_is_the_same_loop(loops):
     assert [(m.row, m.command, m.away) for m in first] == [
         (m.row, m.command, m.away) for m in second
     ]
+
+
+@pytest.mark.parametrize("depth", [True, False])
+def test_depth_is_given_or_not(loops, depth):
+    loop = loops(depth=depth)
+    list(islice(loop.run(), 2))
+    assert ("depth" in loop.tracker.space.came) is depth
+
+
+def test_the_tracker_gets_the_network(loops, made_network, monkeypatch):
+    given = []
+    monkeypatch.setattr(NetworkEnsemble, "start", lambda self, image, box: given.append(image))
+    next(loops(network=str(made_network)).run())
+    assert len(given) == 1
 
 
 def test_the_robot_stands_still_within_half_a_second_of_a_loss(loop):

@@ -7,6 +7,7 @@ import pytest
 from het_ros.scene import SceneConfig
 from het_ros.scene.honesty import Honesty
 from het_ros.tools import scenes
+from het_ros.tracking.config import TrackerConfig
 
 
 @pytest.mark.parametrize("more", [[], ["--gray"]], ids=["colour", "gray"])
@@ -22,6 +23,15 @@ def test_a_story_is_followed_and_told(capsys, tmp_path, monkeypatch, more):
     rows = json.loads(out.read_text())
     assert [row["scene"]["seed"] for row in rows] == [0, 1]
     assert all(row["ends_on_target"] and row["velocity"] is None for row in rows)
+
+
+def test_the_tracker_gets_what_was_asked_for(monkeypatch):
+    given = []
+    monkeypatch.setattr(scenes, "followed", lambda scene, tracker, gray: given.append(tracker))
+    monkeypatch.setattr(scenes, "honesty", lambda moments, rate: None)
+    monkeypatch.setattr(scenes.scene_velocity, "velocity_of", lambda moments, rate: None)
+    scenes.judged(SceneConfig(), tracker_seed=3, network="folder")
+    assert given == [TrackerConfig(seed=3, network="folder")]
 
 
 def test_what_the_table_says_of_good_and_bad_scenes():

@@ -9,13 +9,14 @@ from the prediction.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
-from het_ros.tracking.bottom.ensemble import Look
+from het_ros.tracking.bottom.second_thread import SecondThread
 from het_ros.tracking.bottom.siamese import Siamese
 from het_ros.tracking.box import Box
 from het_ros.tracking.features.channels import Pixels, bgr_of
@@ -72,17 +73,19 @@ class NetworkEnsemble:
 
     Args:
         folder: of the network's files; see :meth:`Siamese.read`.
+        beside: whether it may look in a thread of its own.
 
     Raises:
         ValueError: the files are missing or no such network.
     """
 
-    def __init__(self, folder: Path) -> None:
+    def __init__(self, folder: Path, beside: bool = False) -> None:
         self._config = NetworkConfig()
         self._network = Siamese.read(folder)
         hann = np.hanning(self._network.places)
         self._window = np.outer(hann, hann)
         self._stretch, self._offset = np.ones(2), np.zeros(2)
+        self._thread = SecondThread(beside)
 
     def start(self, image: Pixels, box: Box) -> None:
         """Take the target in ``box`` of the image, (H, W, 3) or (H, W) uint8."""
@@ -98,23 +101,31 @@ class NetworkEnsemble:
         middle = np.array([x + width / 2, y + height / 2])
         self._offset = belief * np.clip((np.array(box.centre) - middle) / seen, -most, most)
 
-    def propose(self, look: Look, at: Floats) -> Proposal:
+    def begin(self, image: Pixels, at: Floats, size: Floats) -> Callable[[], Proposal]:
+        """Begin :meth:`propose`; what is handed back waits for the proposal.
+
+        The image must not be written until then.
+        """
+        return self._thread.begin(self.propose, image, at, size)
+
+    def propose(self, image: Pixels, at: Floats, size: Floats) -> Proposal:
         """Look around a place.
 
         Args:
-            look: of this frame.
+            image: (H, W, 3) or (H, W) uint8, the whole one.
             at: (x, y), image px: middle of the search crop.
+            size: (w, h) of the target as it is known, image px.
         """
         config = self._config
-        width, height = look.size.tolist()
-        scores, boxes = self._network.look(bgr_of(look.image), (at[0], at[1]), (width, height))
+        width, height = size.tolist()
+        scores, boxes = self._network.look(bgr_of(image), (at[0], at[1]), (width, height))
         sides = np.maximum(boxes[2:].astype(np.float64), config.smallest)
         offsets = self._offset[:, None, None] * sides
         centres = np.moveaxis(boxes[:2] + boxes[2:] / 2 + offsets, 0, -1)
         w, h = self._stretch[:, None, None] * sides
-        size = _context(w, h) / _context(width, height)
+        larger = _context(w, h) / _context(width, height)
         aspect = (w / h) / (width / height)
-        change = np.maximum(size, 1 / size) * np.maximum(aspect, 1 / aspect)
+        change = np.maximum(larger, 1 / larger) * np.maximum(aspect, 1 / aspect)
         steady = np.exp(-config.penalty * (change - 1))
         ranked = steady * scores * (1 - config.window) + config.window * self._window
         best = np.unravel_index(int(ranked.argmax()), ranked.shape)

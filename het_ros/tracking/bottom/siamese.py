@@ -43,6 +43,7 @@ class Siamese:
     """
 
     def __init__(self, backbone: Path, head: Path) -> None:
+        self._files = backbone, head
         self._backbone, self._head = _net(backbone), _net(head)
         self._outputs = self._head.getUnconnectedOutLayersNames()
         try:
@@ -51,6 +52,14 @@ class Siamese:
         except (cv2.error, StopIteration) as error:
             raise ValueError(f"{backbone} and {head.name} are no NanoTrack network") from error
         self.places = len(score)
+
+    def __getstate__(self) -> dict[str, Any]:
+        return {"files": self._files, "template": self._template}
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        """OpenCV's networks cannot be copied: their files are read again."""
+        self.__init__(*state["files"])  # type: ignore[misc]
+        self._template = state["template"]
 
     @classmethod
     def read(cls, folder: Path) -> Siamese:

@@ -13,8 +13,6 @@ from het_ros.tracking.bottom import network
 from het_ros.tracking.bottom.network import NetworkConfig, NetworkEnsemble, Proposal
 from het_ros.tracking.bottom.siamese import placed
 
-from .looks import look_at
-
 CONFIG = NetworkConfig()
 IMAGE = np.zeros((120, 160, 3), np.uint8)
 FIRST = Box(60, 40, 20, 30)
@@ -48,12 +46,8 @@ def made(monkeypatch):
     return given, NetworkEnsemble(Path("made"))
 
 
-def look(image=IMAGE, size=(20.0, 30.0)):
-    return look_at(image, (40, 20), (64, 64), size=np.array(size))
-
-
 def propose(ensemble, at=FIRST.centre):
-    return ensemble.propose(look(), np.array(at))
+    return ensemble.propose(IMAGE, np.array(at), np.array([20.0, 30.0]))
 
 
 @pytest.mark.parametrize("image", [IMAGE, IMAGE[..., 0]], ids=["colour", "gray"])
@@ -200,8 +194,8 @@ def test_on_real_frames_the_proposal_is_the_target(real, sequence, name):
     real.start(frames.image(0), frames.boxes[0])
     for index in (3, 6):
         before, truth = frames.boxes[index - 3], frames.boxes[index]
-        seen = look(frames.image(index), (before.w, before.h))
-        found = real.propose(seen, np.array(before.centre))
+        size = np.array([before.w, before.h])
+        found = real.propose(frames.image(index), np.array(before.centre), size)
         assert found.box.iou(truth) > 0.5
         assert found.score > 0.5
         side = math.sqrt(truth.area)

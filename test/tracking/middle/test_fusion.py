@@ -114,14 +114,14 @@ class MadeNetwork:
 
     said = proposal(SIZE)
 
-    def __init__(self, folder):
+    def __init__(self, folder, beside):
         pass
 
     def start(self, image, box):
         pass
 
-    def propose(self, look, at):
-        return self.said
+    def begin(self, image, at, size):
+        return lambda: self.said
 
 
 @pytest.fixture
@@ -153,6 +153,43 @@ def test_the_tracker_goes_where_both_say_or_the_likelier(
     agreement = started.target.confidence.agreement
     assert agreement.network_score == pytest.approx(score if goes == centre or not differ else 0)
     assert 0 <= agreement.apart <= 1
+
+
+class Counting:
+    """A base ensemble of somebody else: notes what it is asked, and says nothing."""
+
+    def __init__(self):
+        self.looks = []
+
+    def vote(self, look):
+        self.looks.append(look)
+
+    def learn(self, look, box, weight):
+        pass
+
+    def forget(self):
+        pass
+
+
+@pytest.mark.parametrize(
+    ("centre", "score", "again"),
+    [((75.0, 55.0), 0.9, False), ((120.0, 90.0), 0.9, True), ((120.0, 90.0), 0.4, False)],
+)
+def test_a_sure_place_beyond_the_window_is_looked_at_instead(
+    noise, monkeypatch, centre, score, again
+):
+    monkeypatch.setattr(target, "NetworkEnsemble", MadeNetwork)
+    monkeypatch.setattr(MadeNetwork, "said", proposal(SIZE, score, centre=centre))
+    ensemble = Counting()
+    tracker = HierarchicalEnsembleTracker(
+        TrackerConfig(network="made"), further=[lambda image, box: ensemble]
+    )
+    tracker.init(noise, Box.from_centre(70, 55, *SIZE))
+    tracker.update(noise, 1 / 30)
+    (look,) = ensemble.looks  # it is asked once a frame
+    rows, columns = look.places
+    middle = look.centre_of(np.array([columns - 1, rows - 1]) / 2)
+    np.testing.assert_allclose(middle, centre if again else (70, 55), atol=1.0)
 
 
 def test_the_trackers_size_follows_the_networks(started, noise, monkeypatch):
