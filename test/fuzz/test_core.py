@@ -116,7 +116,7 @@ class Core(RuleBasedStateMachine):
         """After all that, a new box on a good frame is followed as if nothing had been."""
         if not hasattr(self, "tracker"):
             return
-        self.tracker.config = TrackerConfig()
+        self.tracker.config = type(self.tracker.config)()
         self.tracker.init(frames()[0], BOX)
         for image in frames()[1:4]:
             estimate = self.tracker.update(image, 1 / 30)

@@ -2,8 +2,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """The default configuration on real frames, and on whatever else a stream may hold."""
 
+import copy
 import dataclasses
 import os
+import pickle
 import subprocess
 import sys
 
@@ -160,6 +162,19 @@ def test_same_seed_same_result_to_the_bit(crossing):
         )
         np.testing.assert_array_equal(a.covariance, b.covariance)
     assert [a.box for a in again] != [a.box for a in other]
+
+
+@pytest.mark.parametrize("copied", [copy.deepcopy, lambda t: pickle.loads(pickle.dumps(t))])
+def test_a_copy_goes_on_as_its_original(crossing, copied):
+    frames, _ = crossing
+    tracker = HierarchicalEnsembleTracker(TrackerConfig(seed=7))
+    tracker.init(frames.image(0), frames.boxes[0])
+    for index in range(1, 8):
+        tracker.update(frames.image(index), 1 / 30)
+    twin = copied(tracker)
+    for index in range(8, 16):
+        one, other = (t.update(frames.image(index), 1 / 30) for t in (tracker, twin))
+        assert one.box == other.box
 
 
 @pytest.mark.parametrize(

@@ -26,6 +26,10 @@ class Buffers:
         # Of an array that nothing but the list holds; counted, as Python's versions differ.
         self._unheld = _references([np.empty(1)], 0)
 
+    def __reduce__(self) -> tuple[type[Buffers], tuple[()]]:
+        """A copy begins with nothing."""
+        return Buffers, ()
+
     def empty(self, shape: tuple[int, ...], dtype: DTypeLike) -> Array:
         """A writeable array that owns its memory and that nobody else holds.
 

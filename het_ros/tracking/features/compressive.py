@@ -266,6 +266,10 @@ class CompressiveFeatures:
         self._normalisation: tuple[FeatureMaps, FeatureMaps] | None = None
         self._sums: RectangleSums | None = None
 
+    def __getstate__(self) -> dict[str, Any]:
+        """A copy makes sums of its own: they write through views, which copying would part."""
+        return {**self.__dict__, "_sums": None}
+
     def maps(self, integrals: Integrals) -> FeatureMaps:
         """(m, rows, columns) of the normalised features at every place of a window.
 
