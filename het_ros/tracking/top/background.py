@@ -151,11 +151,11 @@ class Background:
         stood = self._best_of(before, patch, config.camera_error * size)
         if stood <= config.alike:
             return False
-        target = (
-            (one, np.array(one.box.centre) - size / 2)
-            for one in latest_first
-            if self._time - one.time > config.not_lately
-        )
+        # The oldest shows what was given, however lately that was.
+        of_target = [
+            one for one in latest_first if self._time - one.time > config.not_lately
+        ] or latest_first[-1:]
+        target = ((one, np.array(one.box.centre) - size / 2) for one in of_target)
         return stood > self._best_of(target, patch, config.target_error * size) + config.clearly
 
     def _best_of(self, places: Iterable[Place], patch: Image, error: Floats) -> float:

@@ -70,6 +70,17 @@ def test_it_is_found_where_the_camera_has_moved_it_to():
     assert not still.shows(hidden, moved)
 
 
+def test_before_anything_of_it_is_old_it_is_compared_with_what_was_given():
+    """It comes within half a second to where something of its own look stands."""
+    background = Background((240, 320), np.sqrt(W * H))
+    for x in (120, 140, 160, 180, 200):
+        image, box = view(x)
+        image[60 : 60 + H, int(POST.x) : int(POST.x) + W] = FIGURE
+        if x < POST.x:
+            background.remember(image, box, DT)
+    assert not background.shows(image, box)
+
+
 def test_the_target_that_stood_there_itself_has_not_stood_there_before():
     """What stands still, is covered and seen again is where it was."""
     background = Background((240, 320), np.sqrt(W * H))
