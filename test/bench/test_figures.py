@@ -102,4 +102,8 @@ def test_a_promise_is_kept_broken_or_not_measured(value, kept):
 
 
 def test_every_promise_is_on_a_figure_that_a_bench_has():
-    assert {promise.figure for promise in promises.PROMISES} <= set(REQUIRED)
+    figures = {promise.figure for promise in promises.PROMISES}
+    # Those are of a bench that was given networks.
+    with_networks = {figure for figure in figures if figure.startswith("core.network.")}
+    assert len(with_networks) == 2
+    assert figures - with_networks <= set(REQUIRED)

