@@ -60,7 +60,7 @@ define make_venv
 endef
 
 $(VENV)/.ready: setup.py package.xml
-	@echo 'Setting up $(VENV): ROS 2 Jazzy and tools from PyPI, about a minute and 1 GB'
+	@echo 'Setting up $(VENV): ROS 2 Jazzy and tools from PyPI, about two minutes and 1.3 GB'
 	$(call make_venv,$(VENV),$(VENV_EXTRAS))
 
 $(PEERS)/.ready: setup.py

@@ -26,6 +26,8 @@ tracker = HierarchicalEnsembleTracker()
 estimate = tracker.init(image, Box(*map(float, box)))
 code, size = cv2.VideoWriter_fourcc(*"mp4v"), image.shape[1::-1]
 writer = cv2.VideoWriter(options.out, code, rate, size) if options.out else None
+if writer and not writer.isOpened():
+    parser.error(f"{options.out} cannot be written: does its folder exist?")
 while more and (writer or cv2.waitKey(1) != 27):  # Escape ends it
     x, y, w, h = map(round, estimate.box.as_tuple())
     text = f"{estimate.state.value} {estimate.score:.2f}"
