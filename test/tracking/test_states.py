@@ -103,7 +103,7 @@ def test_a_real_occlusion_is_told_and_survived(sequence):
     estimates = [tracker.update(frames.image(i), 1 / 30) for i in range(1, 130)]
     overlaps = [e.box.iou(b) for e, b in zip(estimates, frames.boxes[1:130], strict=True)]
     off = {i for i, overlap in enumerate(overlaps, 1) if overlap < 0.1}
-    doubted = {i for i, e in enumerate(estimates, 1) if e.score < 0.5}
+    doubted = {i for i, e in enumerate(estimates, 1) if e.score <= 0.5}
     assert off <= doubted and doubted & set(range(65, 86))
     assert all(60 <= i <= 100 for i in doubted)
     assert all(e.state is not State.LOST for e in estimates)
