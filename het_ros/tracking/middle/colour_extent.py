@@ -2,17 +2,17 @@
 # SPDX-License-Identifier: Apache-2.0
 """How far the target's colours reach: a box of other width, height and place than the voted one.
 
-Votes move a box of one shape. Who bends or turns has another one, which its colours show: with the
-likelihood p of each px, the rectangle with the largest sum of p - 1/2 is what Bayes takes for the
-target. Its edges are found one direction after the other. What counts is how they have moved
-since the first frames, since the colours of a given box seldom fill it; and only part of it is
-believed, as a regression on true boxes says.
+Votes move a box of one shape. A target that bends or turns has another shape, which its colours
+show: with the likelihood p of each px, the target is the rectangle with the largest sum of
+p - 1/2. Its edges are found in one direction after the other. The colours of the given box seldom
+fill it, so only the difference to the first frames counts; and only part of that is taken over,
+by a regression on true boxes.
 """
 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -44,14 +44,14 @@ class ExtentConfig:
     size: tuple[float, float] = (0.3, 0.15)
 
 
-@dataclass
 class ColourExtent:
     """Follows how the colours' extent differs from the voted box."""
 
-    _config: ExtentConfig = field(default_factory=ExtentConfig)
-    _frames: int = 0
-    _given: Floats = field(default_factory=lambda: np.zeros((2, 2)))
-    _mean: Floats = field(default_factory=lambda: np.zeros((2, 2)))
+    def __init__(self) -> None:
+        self._config = ExtentConfig()
+        self._frames = 0
+        self._given: Floats = np.zeros((2, 2))
+        self._mean: Floats = np.zeros((2, 2))
 
     def follow(self, likelihood: Plane, corner: Floats, size: Floats) -> None:
         """Take in one frame.
