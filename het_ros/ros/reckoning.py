@@ -71,8 +71,8 @@ class Reckoning:
 def _carried_on(now: float, times: np.ndarray, track: np.ndarray) -> float:
     """A coordinate (n,) m of ``times`` (n,) s, at ``now`` on the line through the latest of them.
 
-    Who drives by a line does not shake as single places do, and is not late behind an even
-    motion, as by their mean.
+    A line through places shakes less than the last of them, and is not late behind an even
+    motion, as their mean is.
     """
     last = float(times[-1])
     if last - times[0] < SHORTEST:
