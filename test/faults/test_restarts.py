@@ -28,6 +28,8 @@ from .lockstep import crossing, header, pixels_of
 RATE = 30.0
 FIRST = 1000  # s
 COMPRESSED = ("--ros-args", "-p", "image_transport:=compressed")
+# Told when the camera is found, and where a slow machine gives the test time to miss a depth.
+ANY_TIME = ("is asked for best_effort", "is subscribed to, but nothing comes on")
 SANE = {0, -signal.SIGTERM, -signal.SIGINT}
 
 
@@ -143,9 +145,8 @@ def test_a_tracker_that_is_killed_and_comes_back(processes, local_graph, sequenc
             pixels = pixels_of(footage, delivery.frame)
             camera.show(local_graph, image_message(pixels, header(delivery.stamp)))
         assert status_values(camera.got["status"][-1])["state"] == "TRACKING"
-        # The reliability may be told before or after, when the camera is found.
         lines = tracker.log.read_text().splitlines()
-        begin, started = (line for line in lines if "is asked for best_effort" not in line)
+        begin, started = (line for line in lines if not any(said in line for said in ANY_TIME))
         assert "active: images from /image, boxes on /tracker/init_box" in begin
         assert "tracking started on" in started
         names = (name for name, _ in camera.get_topic_names_and_types())
