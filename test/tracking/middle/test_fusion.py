@@ -1,6 +1,6 @@
 # Copyright 2026 het_ros maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""Agreement, disagreement and size, as tables; and in the tracker, with a network that is made."""
+"""Agreement, disagreement and size, as tables."""
 
 import dataclasses
 import math
@@ -8,8 +8,7 @@ import math
 import numpy as np
 import pytest
 
-from het_ros import Box, HierarchicalEnsembleTracker, TrackerConfig
-from het_ros.tracking import target
+from het_ros import Box
 from het_ros.tracking.bottom.network import Proposal
 from het_ros.tracking.fitted import FITTED
 from het_ros.tracking.middle.fusion import (
@@ -107,92 +106,3 @@ def test_the_size_arrives_where_the_network_stays():
     for _ in range(80):
         size = followed_size(size, proposal(wanted))
     np.testing.assert_allclose(size, wanted, rtol=1e-3)
-
-
-class MadeNetwork:
-    """Proposes what it was told."""
-
-    said = proposal(SIZE)
-
-    def __init__(self, folder, beside):
-        pass
-
-    def start(self, image, box):
-        pass
-
-    def begin(self, image, at, size):
-        return lambda: self.said
-
-
-@pytest.fixture
-def started(noise, monkeypatch):
-    """A tracker with a made network on a target that stands still at (70, 55)."""
-    monkeypatch.setattr(target, "NetworkEnsemble", MadeNetwork)
-    tracker = HierarchicalEnsembleTracker(TrackerConfig(network="made"))
-    tracker.init(noise, Box.from_centre(70, 55, *SIZE))
-    return tracker
-
-
-@pytest.mark.parametrize(
-    ("centre", "score", "goes", "differ"),
-    [
-        ((74.0, 55.0), 0.9, (72.4, 55.0), False),  # they agree: 0.6 of the way
-        ((40.0, 85.0), 0.05, (70.0, 55.0), True),  # it is unsure
-        ((90.0, 55.0), 1.0, (90.0, 55.0), True),  # it is sure, and sees nothing at the other
-    ],
-)
-def test_the_tracker_goes_where_both_say_or_the_likelier(
-    started, noise, monkeypatch, centre, score, goes, differ
-):
-    monkeypatch.setattr(MadeNetwork, "said", proposal(SIZE, score, centre=centre))
-    by_its_score = dataclasses.replace(FITTED, network_is_right=(9.0, 0.0, 0.0, -1.0))
-    started.target._fusion = FusionConfig.of(by_its_score)
-    started.update(noise, 1 / 30)
-    assert (started.target.disagreement is not None) is differ
-    np.testing.assert_allclose(started.target.judged.centre, goes, atol=0.6)
-    agreement = started.target.confidence.agreement
-    assert agreement.network_score == pytest.approx(score if goes == centre or not differ else 0)
-    assert 0 <= agreement.apart <= 1
-
-
-class Counting:
-    """A base ensemble of somebody else: notes what it is asked, and says nothing."""
-
-    def __init__(self):
-        self.looks = []
-
-    def vote(self, look):
-        self.looks.append(look)
-
-    def learn(self, look, box, weight):
-        pass
-
-    def forget(self):
-        pass
-
-
-@pytest.mark.parametrize(
-    ("centre", "score", "again"),
-    [((75.0, 55.0), 0.9, False), ((120.0, 90.0), 0.9, True), ((120.0, 90.0), 0.4, False)],
-)
-def test_a_sure_place_beyond_the_window_is_looked_at_instead(
-    noise, monkeypatch, centre, score, again
-):
-    monkeypatch.setattr(target, "NetworkEnsemble", MadeNetwork)
-    monkeypatch.setattr(MadeNetwork, "said", proposal(SIZE, score, centre=centre))
-    ensemble = Counting()
-    tracker = HierarchicalEnsembleTracker(
-        TrackerConfig(network="made"), further=[lambda image, box: ensemble]
-    )
-    tracker.init(noise, Box.from_centre(70, 55, *SIZE))
-    tracker.update(noise, 1 / 30)
-    (look,) = ensemble.looks  # it is asked once a frame
-    rows, columns = look.places
-    middle = look.centre_of(np.array([columns - 1, rows - 1]) / 2)
-    np.testing.assert_allclose(middle, centre if again else (70, 55), atol=1.0)
-
-
-def test_the_trackers_size_follows_the_networks(started, noise, monkeypatch):
-    monkeypatch.setattr(MadeNetwork, "said", proposal(1.1 * SIZE, centre=(70.0, 55.0)))
-    box = started.update(noise, 1 / 30).box
-    assert 1.02 < math.sqrt(box.area / SIZE.prod()) < 1.06
