@@ -28,7 +28,7 @@ from het_ros.evaluation.drawing import colours
 from het_ros.evaluation.jobs import DIED, SourceChangedError
 from het_ros.evaluation.plots import plots
 from het_ros.evaluation.protocols import PROTOCOLS
-from het_ros.evaluation.readers import read_sequences
+from het_ros.evaluation.readers import add_sequences, read_sequences
 from het_ros.evaluation.runs import Plan, Run, carry_out_plan
 from het_ros.evaluation.strips import strips
 from het_ros.evaluation.summary import Scored, score_runs, summarise
@@ -75,7 +75,7 @@ def parser() -> argparse.ArgumentParser:
         epilog=EXAMPLE,
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
-    p.add_argument("--data", type=Path, help="folder of sequences (OTB, VOT)")
+    add_sequences(p, required=False)
     p.add_argument("--out", type=Path, help="folder for results and cache")
     p.add_argument(
         "--compare",
@@ -98,7 +98,6 @@ def parser() -> argparse.ArgumentParser:
     )
     p.add_argument("--seeds", type=_positive, default=1, help="seeds of random trackers (1)")
     p.add_argument("--protocol", choices=PROTOCOLS, default="ope", help="(ope)")
-    p.add_argument("--sequences", default="", help="comma-separated (default: all)")
     p.add_argument(
         "--fps", default="", help="frame rates: 30, or 30,NAME=10 (default: the data's, or 30)"
     )

@@ -4,6 +4,7 @@
 
 from __future__ import annotations
 
+import argparse
 import json
 from collections.abc import Mapping
 from pathlib import Path
@@ -109,3 +110,11 @@ def _attributes(data: Path) -> dict[str, list[str]]:
             tags: dict[str, list[str]] = json.loads(file.read_text())
             return tags
     return {}
+
+
+def add_sequences(parser: argparse.ArgumentParser, required: bool = True) -> None:
+    """Add --data, the folder that is read, and --sequences, some of what is in it."""
+    parser.add_argument(
+        "--data", type=Path, required=required, help="folder of sequences (OTB, VOT)"
+    )
+    parser.add_argument("--sequences", default="", help="comma-separated (default: all)")

@@ -24,7 +24,7 @@ import numpy as np
 from het_ros.bench.figures import plain
 from het_ros.evaluation.cache import Cache
 from het_ros.evaluation.forewarning import forewarning
-from het_ros.evaluation.readers import read_sequences
+from het_ros.evaluation.readers import add_sequences, read_sequences
 from het_ros.evaluation.runs import Plan, Run, carry_out_plan
 from het_ros.evaluation.sequences import Sequence
 from het_ros.evaluation.summary import score_runs
@@ -109,8 +109,7 @@ def table(rows: list[dict[str, Any]]) -> str:
 def main(argv: list[str] | None = None) -> int:
     """Command line."""
     p = command("stress", __doc__, EXAMPLE)
-    p.add_argument("--data", type=Path, required=True, help="folder of sequences (OTB, VOT)")
-    p.add_argument("--sequences", default="", help="comma-separated (default: all)")
+    add_sequences(p)
     p.add_argument("--cameras", default="30,60", help="frames/s (30,60)")
     p.add_argument(
         "--load", type=int, default=os.cpu_count() or 1, help="processes (one a processor)"

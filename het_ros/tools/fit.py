@@ -36,7 +36,7 @@ from het_ros.evaluation.fit import (
 )
 from het_ros.evaluation.jobs import one_thread
 from het_ros.evaluation.protocols import true_box
-from het_ros.evaluation.readers import read_sequences
+from het_ros.evaluation.readers import add_sequences, read_sequences
 from het_ros.scene import Scene, SceneConfig
 from het_ros.scene.honesty import IN_SIGHT
 from het_ros.tools.arguments import INTERRUPTED, command
@@ -169,10 +169,9 @@ def moved(fits: dict[str, Fit], runs: Sequence[Recorded], before: Calibration) -
 def main(argv: list[str] | None = None) -> int:
     """Command line."""
     p = command("fit", __doc__, EXAMPLE)
-    p.add_argument("--data", type=Path, required=True, help="folder of sequences (OTB, VOT)")
+    add_sequences(p)
     p.add_argument("--models", type=Path,
                    help="folder with NanoTrack v3; else what needs it stays")  # fmt: skip
-    p.add_argument("--sequences", default="", help="comma-separated (default: all)")
     p.add_argument("--seeds", type=int, default=3, help="runs from the true first box (3)")
     p.add_argument("--off", type=int, default=3, help="runs from boxes off by a tenth (3)")
     p.add_argument("--scenes", type=int, default=1, help="rendered scenes of each story (1)")

@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 
 from het_ros.evaluation.jobs import one_thread
 from het_ros.evaluation.raw_boxes import FIRST_PIXEL
-from het_ros.evaluation.readers import read_sequences
+from het_ros.evaluation.readers import add_sequences, read_sequences
 from het_ros.evaluation.sequences import Sequence
 from het_ros.evaluation.trackers import TrackerSpec, tracker_spec
 from het_ros.tracking.box import Box
@@ -148,9 +148,8 @@ def main(arguments: list[str] | None = None) -> int:
         epilog=EXAMPLE,
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
-    p.add_argument("--data", type=Path, required=True, help="folder of sequences (OTB, VOT)")
+    add_sequences(p)
     p.add_argument("--out", type=Path, required=True, help="the toolkit's results and reports")
-    p.add_argument("--sequences", default="", help="comma-separated (default: all)")
     p.add_argument("--models", type=Path, help="folder of the networks' files")
     how = p.add_mutually_exclusive_group(required=True)
     how.add_argument("--tracker", help="run this one, named as for evaluate")

@@ -16,7 +16,7 @@ from pathlib import Path
 import cv2
 import numpy as np
 
-from het_ros.evaluation.readers import read_sequences
+from het_ros.evaluation.readers import add_sequences, read_sequences
 from het_ros.evaluation.sequences import Sequence
 from het_ros.evaluation.trackers import split_names, tracker_spec
 
@@ -91,9 +91,8 @@ def main(arguments: list[str] | None = None) -> int:
         epilog=EXAMPLE,
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
-    p.add_argument("--data", type=Path, required=True, help="folder of sequences (OTB, VOT)")
+    add_sequences(p)
     p.add_argument("--out", type=Path, required=True, help="the workspace's folder")
-    p.add_argument("--sequences", default="", help="comma-separated (default: all)")
     p.add_argument("--trackers", default="het", help="named as for evaluate (het)")
     p.add_argument("--models", type=Path, help="folder of the networks' files")
     options = p.parse_args(arguments)
