@@ -20,6 +20,7 @@ VISIBILITY_TOPIC = "/ground_truth/visibility"  # DiagnosticArray with the value 
 
 IMAGE = "sensor_msgs/msg/Image"
 COMPRESSED_IMAGE = "sensor_msgs/msg/CompressedImage"
+CAMERA_INFO = "sensor_msgs/msg/CameraInfo"
 POLYGON = "geometry_msgs/msg/PolygonStamped"
 DIAGNOSTICS = "diagnostic_msgs/msg/DiagnosticArray"
 

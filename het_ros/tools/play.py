@@ -19,7 +19,7 @@ from het_ros.tools.bag_reader import BagReader, header_stamp
 from het_ros.tools.bag_writer import BagWriter
 from het_ros.tools.handshake import LONGEST_SPIN, NobodyListensError, Spin, wait_until_known
 from het_ros.tools.interrupt import StopRequest
-from het_ros.tools.outputs import DEFAULT_TRACKER
+from het_ros.tools.outputs import DEFAULT_TRACKER, outputs_from
 from het_ros.tools.play_clock import PlayClock
 from het_ros.tools.player import Player
 from het_ros.tools.recorder import Recorder
@@ -91,7 +91,8 @@ def play(
         with BagWriter(recording) as bag_of_answers:
             clock = PlayClock(rate) if now else None
             player = Player(node, bag, tracker, init, without_box, clock)
-            recorder = Recorder(node, bag_of_answers, tracker, clock)
+            possible = outputs_from(bag)
+            recorder = Recorder(node, bag_of_answers, tracker, clock, outputs=possible)
             player.wait_for_subscriber(spin, wait, stop)
             _wait_for_tracker(recorder, tracker, spin, wait, stop)
             wait_until_known(node, tracker, spin, wait, stop)

@@ -12,6 +12,7 @@ from rclpy.node import Node
 from rclpy.qos import QoSProfile, ReliabilityPolicy
 
 from het_ros.tools.bag_messages import (
+    CAMERA_INFO,
     COMPRESSED_IMAGE,
     IMAGE,
     INIT_BOX_TOPIC,
@@ -30,7 +31,7 @@ PLAYED_TYPES = (
     IMAGE,
     COMPRESSED_IMAGE,
     POLYGON,
-    "sensor_msgs/msg/CameraInfo",
+    CAMERA_INFO,
     "sensor_msgs/msg/RegionOfInterest",
 )
 STAMPED = set(PLAYED_TYPES) - {"sensor_msgs/msg/RegionOfInterest"}

@@ -4,7 +4,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Collection
 from typing import Any
 
 from rclpy.node import Node
@@ -31,6 +31,7 @@ class Recorder:
         tracker: full name of the tracker's node.
         clock: of a play with stamps of its own; the recording has the bag's.
         on_failure: is called when the bag takes no more, instead of an error in the callback.
+        outputs: names of those that are recorded.
 
     Attributes:
         answered: stamps (ns) of the frames for which a status came.
@@ -44,6 +45,7 @@ class Recorder:
         tracker: str = DEFAULT_TRACKER,
         clock: PlayClock | None = None,
         on_failure: Callable[[OSError], None] | None = None,
+        outputs: Collection[str] = tuple(OUTPUT_TYPES),
     ) -> None:
         self._node = node
         self._bag = bag
@@ -53,7 +55,7 @@ class Recorder:
         self.size = 0
         self._status_topic = f"{tracker}/status"
         self._subscriptions = [
-            self._subscribe(node, f"{tracker}/{name}", kind) for name, kind in OUTPUT_TYPES.items()
+            self._subscribe(node, f"{tracker}/{name}", OUTPUT_TYPES[name]) for name in outputs
         ]
 
     @property

@@ -64,6 +64,7 @@ def test_the_installed_tracker_answers_what_it_is_sent(
     printed = capfd.readouterr().out
     assert f"24 sent, {len(answered)} answered" in printed
     assert "mean IoU" in printed
+    assert "is subscribed to, but nothing comes" not in printed  # of what the footage lacks
     assert str(out / "track.mp4") in printed
     with BagReader(out / "bag") as bag:
         stamps = {recorded.time for recorded in bag.recorded("/tracker/status")}
