@@ -89,8 +89,9 @@ VIDEO ?=
 INIT ?=
 SEQUENCE ?=
 NETWORK ?=
+FPS ?=
 FOOTAGE = $(if $(VIDEO),--video '$(VIDEO)') $(if $(SEQUENCE),--sequence '$(SEQUENCE)') \
-	$(if $(NETWORK),--network '$(NETWORK)')
+	$(if $(FPS),--fps $(FPS)) $(if $(NETWORK),--network '$(NETWORK)')
 
 run: OUT ?= out/run
 run: $(BUILT) ## Follow the target of the recorded bag, or of your own footage; look into out/run
