@@ -14,7 +14,13 @@ from het_ros.ros.outputs import Outputs
 from het_ros.ros.silence import publishers_of
 from het_ros.ros.space import Space
 
-NEEDS = {"bearing": ("camera_info",), "target_pose": ("camera_info", "depth")}
+_WITH_DEPTH = "camera_info", "depth"
+NEEDS = {  # inputs by output
+    "bearing": ("camera_info",),
+    "target_pose": _WITH_DEPTH,
+    "target_pose_cov": _WITH_DEPTH,
+    "target_velocity": _WITH_DEPTH,
+}
 PATIENCE = 3.0  # s that an output is subscribed to without its inputs
 
 

@@ -16,6 +16,7 @@ from tqdm import tqdm
 from het_ros.scene import STORIES, Frame, Lens, Scene, SceneConfig
 from het_ros.tools.arguments import INTERRUPTED, command
 from het_ros.tools.bag_messages import (
+    CAMERA_INFO,
     COMPRESSED_TOPIC,
     INIT_BOX_TOPIC,
     TRUTH_BOX_TOPIC,
@@ -88,7 +89,7 @@ def camera_info_message(lens: Lens, stamp: int) -> Any:
     roi = _TYPES["sensor_msgs/msg/RegionOfInterest"](
         x_offset=0, y_offset=0, height=0, width=0, do_rectify=False
     )
-    return _TYPES["sensor_msgs/msg/CameraInfo"](
+    return _TYPES[CAMERA_INFO](
         header=header(stamp, FRAME_ID),
         height=lens.height,
         width=lens.width,

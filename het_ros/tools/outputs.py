@@ -12,15 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from het_ros.ros.status import status_values
-from het_ros.tools.bag_messages import (
-    CAMERA_INFO,
-    COMPRESSED_IMAGE,
-    DIAGNOSTICS,
-    IMAGE,
-    POLYGON,
-    box_of,
-    stamp_of,
-)
+from het_ros.tools.bag_messages import DIAGNOSTICS, POLYGON, box_of, stamp_of
 from het_ros.tools.bag_reader import BagReader
 from het_ros.tools.results import Row
 from het_ros.tracking.box import Box
@@ -39,23 +31,6 @@ OUTPUT_TYPES = {  # by the name under the node's own
     "target_velocity": "geometry_msgs/msg/TwistWithCovarianceStamped",
     "velocity_in_scene": "geometry_msgs/msg/TwistWithCovarianceStamped",
 }
-
-WITH_DEPTH = {"target_pose", "target_pose_cov", "target_velocity"}
-WITH_CAMERA_INFO = WITH_DEPTH | {"bearing"}
-
-
-def outputs_from(bag: BagReader) -> list[str]:
-    """The outputs that a tracker can publish from what a bag holds.
-
-    What it cannot is left out, for it would warn that somebody waits for that.
-    """
-    kinds = list(bag.topics.values())
-    without: set[str] = set()
-    if sum(kind in (IMAGE, COMPRESSED_IMAGE) for kind in kinds) < 2:  # the camera's alone
-        without |= WITH_DEPTH
-    if CAMERA_INFO not in kinds:
-        without |= WITH_CAMERA_INFO
-    return [name for name in OUTPUT_TYPES if name not in without]
 
 
 def read_answers(

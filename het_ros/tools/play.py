@@ -19,10 +19,10 @@ from het_ros.tools.bag_reader import BagReader, header_stamp
 from het_ros.tools.bag_writer import BagWriter
 from het_ros.tools.handshake import LONGEST_SPIN, NobodyListensError, Spin, wait_until_known
 from het_ros.tools.interrupt import StopRequest
-from het_ros.tools.outputs import DEFAULT_TRACKER, outputs_from
+from het_ros.tools.outputs import DEFAULT_TRACKER
 from het_ros.tools.play_clock import PlayClock
 from het_ros.tools.player import Player
-from het_ros.tools.recorder import Recorder
+from het_ros.tools.recorder import Recorder, outputs_from
 from het_ros.tools.report import ResultsFolder, write_report
 from het_ros.tools.transport import use_profile
 from het_ros.tracking.box import Box

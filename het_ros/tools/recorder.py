@@ -10,13 +10,29 @@ from typing import Any
 from rclpy.node import Node
 from rclpy.qos import QoSProfile, ReliabilityPolicy
 
-from het_ros.tools.bag_reader import header_stamp
+from het_ros.ros.input_hints import NEEDS
+from het_ros.tools.bag_messages import CAMERA_INFO, COMPRESSED_IMAGE, IMAGE
+from het_ros.tools.bag_reader import BagReader, header_stamp
 from het_ros.tools.bag_writer import BagWriter
 from het_ros.tools.message_types import message_class
 from het_ros.tools.outputs import DEFAULT_TRACKER, OUTPUT_TYPES
 from het_ros.tools.play_clock import PlayClock, restamped
 
 QOS = QoSProfile(depth=1000, reliability=ReliabilityPolicy.RELIABLE)
+
+
+def outputs_from(bag: BagReader) -> list[str]:
+    """The outputs that a tracker can publish from what a bag holds.
+
+    What it cannot is left out, for it would warn that somebody waits for that.
+    """
+    kinds = list(bag.topics.values())
+    missing: set[str] = set()
+    if sum(kind in (IMAGE, COMPRESSED_IMAGE) for kind in kinds) < 2:  # the camera's alone
+        missing.add("depth")
+    if CAMERA_INFO not in kinds:
+        missing.add("camera_info")
+    return [name for name in OUTPUT_TYPES if missing.isdisjoint(NEEDS.get(name, ()))]
 
 
 class Recorder:

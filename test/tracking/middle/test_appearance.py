@@ -10,16 +10,9 @@ import pytest
 
 from het_ros import Box, TrackerConfig
 from het_ros.tracking import target
-from het_ros.tracking.bottom.network import Proposal
 from het_ros.tracking.fitted import FITTED
 
-SCORE = np.zeros((1, 1), np.float32)
-SIZE = np.array([20.0, 30.0])
-
-
-def proposal(size, score=1.0, steady=1.0, centre=(100.0, 50.0)):
-    box = Box.from_centre(*centre, *size)
-    return Proposal(box, score, steady, np.full_like(SCORE, score), np.array([[centre]]))
+from .proposals import SIZE, proposal
 
 
 class MadeNetwork:

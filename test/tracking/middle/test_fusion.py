@@ -8,8 +8,6 @@ import math
 import numpy as np
 import pytest
 
-from het_ros import Box
-from het_ros.tracking.bottom.network import Proposal
 from het_ros.tracking.fitted import FITTED
 from het_ros.tracking.middle.fusion import (
     Disagreement,
@@ -19,11 +17,11 @@ from het_ros.tracking.middle.fusion import (
     network_is_right,
 )
 
+from .proposals import SIZE, proposal
+
 CONFIG = FusionConfig()
 # Two places 40 px apart, of which the prediction is in the middle.
 TWO = Disagreement(0.9, 0.1, -0.2, 0.8, (120.0, 50.0), (80.0, 50.0), (100.0, 50.0), 20.0)
-SCORE = np.zeros((1, 1), np.float32)
-SIZE = np.array([20.0, 30.0])
 
 
 def test_a_common_place_is_nearer_to_the_networks():
@@ -75,11 +73,6 @@ def test_a_calibration_gives_the_weights():
     config = FusionConfig.of(fitted)
     assert (config.by_score, config.by_votes, config.by_distance, config.bias) == (1, 2, 3, 4)
     assert FusionConfig.of(FITTED) == CONFIG
-
-
-def proposal(size, score=1.0, steady=1.0, centre=(100.0, 50.0)):
-    box = Box.from_centre(*centre, *size)
-    return Proposal(box, score, steady, np.full_like(SCORE, score), np.array([[centre]]))
 
 
 @pytest.mark.parametrize(

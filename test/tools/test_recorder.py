@@ -9,8 +9,11 @@ import pytest
 
 from het_ros.tools.bag_messages import CAMERA_INFO, COMPRESSED_IMAGE, IMAGE
 from het_ros.tools.bag_reader import BagReader
-from het_ros.tools.outputs import OUTPUT_TYPES, WITH_CAMERA_INFO, WITH_DEPTH, outputs_from
+from het_ros.tools.outputs import OUTPUT_TYPES
+from het_ros.tools.recorder import outputs_from
 
+WITH_DEPTH = {"target_pose", "target_pose_cov", "target_velocity"}
+WITH_CAMERA_INFO = WITH_DEPTH | {"bearing"}
 SHIPPED = Path(__file__).resolve().parents[2] / "bags" / "follow_walk"
 
 

@@ -1,0 +1,16 @@
+# Copyright 2026 het_ros maintainers
+# SPDX-License-Identifier: Apache-2.0
+"""What a made network proposes."""
+
+import numpy as np
+
+from het_ros import Box
+from het_ros.tracking.bottom.network import Proposal
+
+SIZE = np.array([20.0, 30.0])
+SCORE = np.zeros((1, 1), np.float32)
+
+
+def proposal(size, score=1.0, steady=1.0, centre=(100.0, 50.0)):
+    box = Box.from_centre(*centre, *size)
+    return Proposal(box, score, steady, np.full_like(SCORE, score), np.array([[centre]]))
