@@ -191,12 +191,15 @@ class Target:
         if not occluded and self._background:
             occluded = self._background.shows(image, found.box)
         away = np.array(found.box.centre) - found.look.expected
+        side = math.sqrt(found.box.area)
         return self._confidence.judge(
             found.score,
             found.colour,
             found.distractor,
-            float(np.hypot(*away)) / math.sqrt(found.box.area),
+            float(np.hypot(*away)) / side,
             float(found.weights.std()),
+            found.likeness,
+            math.hypot(*self._velocity_in_scene()) / side,
             occluded,
             dt,
             found.agreement,
@@ -265,7 +268,10 @@ class Target:
         covariance = np.zeros((4, 4))
         covariance[:2, :2] = self._motion.covariance[:2, :2] + np.diag(lasting**2)
         covariance[2:, 2:] = motion.covariance
-        own_x, own_y = (np.array(motion.total) - self._ego_motion.velocity).tolist()
-        return Estimate(
-            box, motion.total, covariance, score, state, patches, (own_x, own_y), motion
-        )
+        own = self._velocity_in_scene()
+        return Estimate(box, motion.total, covariance, score, state, patches, own, motion)
+
+    def _velocity_in_scene(self) -> tuple[float, float]:
+        """(x, y), px/s: what is left of the velocity without the camera's motion."""
+        x, y = (np.array(self._velocity.motion.total) - self._ego_motion.velocity).tolist()
+        return x, y

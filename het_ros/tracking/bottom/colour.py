@@ -20,6 +20,7 @@ from het_ros.tracking.box import Box
 from het_ros.tracking.features.channels import Pixels, Plane, deviation
 
 Corner = tuple[float, float]
+UNTAUGHT = "the colour model knows no target yet: call learn first"
 
 
 @dataclass(frozen=True)
@@ -61,6 +62,7 @@ class ColourEnsemble:
         self._config = ColourConfig()
         self._size, self._cell, self._rate = size, cell, rate
         self._target: Plane | None = None
+        self._usual = 1.0
         self._around: Plane = np.empty(0, np.float32)
         self.seen: Plane = np.empty((0, 0), np.float32)
         # A window is asked for its bins twice a frame, to vote and to learn.
@@ -78,6 +80,22 @@ class ColourEnsemble:
             x, y = (look.corner_of(np.array(box.centre)) * self._cell).tolist()
             self.learn_pixels(look.frame.window.pixels, (x, y), weight)
 
+    def likeness(self, look: Look, box: Box) -> float:
+        """How much the colours in ``box``, image px, are those of the target: about 1 for itself.
+
+        The Bhattacharyya coefficient of both histograms over its own average. Unlike
+        :meth:`likelihood` it tells the target from what is in no way like its surroundings
+        either: somebody else.
+
+        Raises:
+            RuntimeError: nothing was learnt.
+        """
+        if self._target is None:
+            raise RuntimeError(UNTAUGHT)
+        x, y = (look.corner_of(np.array(box.centre)) * self._cell).tolist()
+        there = self._core(self._bins_of(look.frame.window.pixels), (x, y))
+        return coefficient(there, self._target) / self._usual
+
     def forget(self) -> None:
         """Nothing of one frame is kept."""
 
@@ -88,7 +106,7 @@ class ColourEnsemble:
             RuntimeError: nothing was learnt.
         """
         if self._target is None:
-            raise RuntimeError("the colour model knows no target yet: call learn first")
+            raise RuntimeError(UNTAUGHT)
         empty = self._config.empty
         table = (self._target + empty) / (
             self._target + self._around + empty / self._config.strange
@@ -108,19 +126,25 @@ class ColourEnsemble:
         bins = self._bins_of(pixels)
         width, height = self._size
         ring = round(self._config.ring * (width + height) / 2)
-        margin = (1 - self._config.core) / 2
-        target = _histogram(_cut(bins, corner, self._size, (-margin * width, -margin * height)))
+        target = self._core(bins, corner)
         wide = _histogram(_cut(bins, corner, self._size, (ring, ring)))
         # Of a target of a few px the ring may be narrower than the px left out around it.
         around = np.maximum(wide - _histogram(_cut(bins, corner, self._size, (2, 2))), 0)
-        target /= target.sum()
         around /= max(float(around.sum()), 1.0)
         if self._target is None:
             self._target, self._around = target, around
         else:
             rate = self._rate * weight
+            self._usual += rate * (coefficient(target, self._target) - self._usual)
             self._target = self._target + rate * (target - self._target)
             self._around = self._around + rate * (around - self._around)
+
+    def _core(self, bins: NDArray[np.intp], corner: Corner) -> Plane:
+        """The histogram, of sum 1, of a target with its corner there, window px."""
+        width, height = self._size
+        margin = (1 - self._config.core) / 2
+        inside = _histogram(_cut(bins, corner, self._size, (-margin * width, -margin * height)))
+        return np.asarray(inside / inside.sum(), np.float32)
 
     def _bins_of(self, pixels: Pixels) -> NDArray[np.intp]:
         if pixels is not self._pixels:
@@ -188,6 +212,11 @@ def _cut(
         last = min(max(round(start + length + more), first + 1), limit)
         ranges.append(slice(first, last))
     return bins[ranges[1], ranges[0]]
+
+
+def coefficient(one: Plane, other: Plane) -> float:
+    """Bhattacharyya coefficient of two histograms of sum 1: 1 where they are equal."""
+    return float(np.sqrt(one * other).sum())
 
 
 def _histogram(bins: NDArray[np.intp]) -> Plane:

@@ -64,6 +64,7 @@ class Found:
         box: the target there, image px.
         score: mean score of the sub-patches there; ``distractor`` the highest elsewhere.
         colour: likelihood of the colours there.
+        likeness: of the colours there to the target's, about 1 for itself.
         weights: (Q,) of the sub-patches there.
         proposal: the network's box there, if it is followed.
         agreement: what the network says of it, if there is one.
@@ -76,6 +77,7 @@ class Found:
     score: float
     distractor: float
     colour: float
+    likeness: float
     weights: Floats
     proposal: Proposal | None = None
     agreement: Agreement | None = None
@@ -237,13 +239,15 @@ class Appearance:
         """A target with its ``centre`` (x, y) there, image px, next to a peak of the votes."""
         row, column = peak.row, peak.column
         (x, y), (width, height) = centre.tolist(), look.size.tolist()
+        box = Box.from_centre(x, y, width, height)
         return Found(
             look,
             peak,
-            Box.from_centre(x, y, width, height),
+            box,
             float(votes.template[row, column]),
             distractor(votes.template, peak, look.cells),
             float(votes.colour[row, column]) ** self._colour_power,
+            self.colour.likeness(look, box),
             self.patches.scores_at(row, column),
         )
 
