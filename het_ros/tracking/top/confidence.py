@@ -217,8 +217,8 @@ class Confidence:
             likely = min(likely, config.unsure)
         least = config.hidden if self._state is State.TRACKING else config.back
         returned = self.unseen > 0
-        known = not nothing and (not returned or likeness >= config.alike)
-        if not occluded and likely >= least and (young or known):
+        alike = not returned or likeness >= config.alike
+        if not occluded and likely >= least and (young or (alike and not nothing)):
             self.unseen, self._unrecognised = 0, 0
             self._hidden_for, self._state = 0.0, State.TRACKING
             weight = 0.0 if ambiguous else self._weight(likely)
@@ -231,7 +231,7 @@ class Confidence:
         self._state = State.LOST if lost else State.COASTING
         near = moved < config.stay_within and relative > config.stay_above
         scenery = likeness <= config.stay_alike and speed <= config.moving
-        follow = near and not scenery and not occluded and not lost
+        follow = near and alike and not scenery and not occluded and not lost
         self.unseen = 0 if follow else self.unseen + 1
         published = 0.0 if lost else min(likely, config.unsure)
         return Decision(follow, returned, 0.0, published, self._state)

@@ -155,6 +155,43 @@ def test_what_the_likelihood_says():
     assert unknown == pytest.approx(STRANGE)
 
 
+def slow_coefficient(one, other):
+    return sum((share * other.get(colour, 0)) ** 0.5 for colour, share in one.items())
+
+
+@pytest.mark.parametrize("pixels", [FEW, GRAY], ids=["colour", "gray"])
+def test_likeness_is_that_of_the_histograms_over_what_is_usual(pixels):
+    """Learnt at one place and from a second frame; asked for at a third."""
+    later = np.roll(pixels, 5, axis=1)[::-1].copy()
+    model = ColourEnsemble(SIZE, 1, 0.3)
+    model.learn_pixels(pixels, CORNER, 1.0)
+    model.learn_pixels(later, CORNER, 1.0)
+    look = look_at(pixels, (0.0, 0.0), (50, 40), cells=SIZE)
+    first, second, there = (
+        slow_histograms(layers(image), corner, SIZE)[0]
+        for image, corner in ((pixels, CORNER), (later, CORNER), (pixels, (20.0, 12.0)))
+    )
+    usual = 1 + 0.3 * (slow_coefficient(second, first) - 1)
+    wanted = slow_coefficient(there, blended(first, second, 0.3)) / usual
+    assert model.likeness(look, Box(20, 12, *SIZE)) == pytest.approx(wanted, abs=1e-5)
+
+
+def test_somebody_in_other_clothes_is_unlike_the_target():
+    """Red over blue; the other one is white over blue: neither is like the green around."""
+    image = np.full((60, 80, 3), (0, 200, 0), np.uint8)
+    image[20:35, 10:20], image[20:35, 50:60] = (0, 0, 200), (250, 250, 250)
+    image[35:50, 10:20] = image[35:50, 50:60] = (200, 0, 0)
+    model = ColourEnsemble((10, 30), 1, 0.02)
+    look = look_at(image, (0.0, 0.0), (80, 60), cells=(10, 30))
+    its, others = Box(10, 20, 10, 30), Box(50, 20, 10, 30)
+    with pytest.raises(RuntimeError, match="learn"):
+        model.likeness(look, its)
+    model.learn(look, its, 1.0)
+    assert model.likeness(look, its) == pytest.approx(1)
+    assert model.likeness(look, others) == pytest.approx(0.5)
+    assert model.likeness(look, Box(30, 20, 10, 30)) == 0
+
+
 @pytest.mark.parametrize("corner", [(-500.0, 3.0), (3.0, 500.0), (-500.0, -500.0)])
 def test_a_target_wholly_outside_the_window_is_survived(corner):
     model = ColourEnsemble(SIZE, 1, 0.02)

@@ -15,8 +15,25 @@ TRACKING, COASTING, LOST = State.TRACKING, State.COASTING, State.LOST
 CONFIG = ConfidenceConfig()
 DT = 0.1
 # What is found of a target that is there, is half like itself, or is not there.
-SURE = {"score": 0.9, "colour": 0.7, "distractor": 0.2, "moved": 0.02, "spread": 0.05}
-GONE = {"score": 0.05, "colour": 0.1, "distractor": 0.02, "moved": 0.9, "spread": 0.3}
+SURE = {
+    "score": 0.9,
+    "colour": 0.7,
+    "distractor": 0.2,
+    "moved": 0.02,
+    "spread": 0.05,
+    "likeness": 1.0,
+    "speed": 0.0,
+}
+GONE = {
+    "score": 0.05,
+    "colour": 0.1,
+    "distractor": 0.02,
+    "moved": 0.9,
+    "spread": 0.3,
+    "likeness": 0.2,
+    "speed": 0.0,
+}
+MAY_BE = {"score": 0.4, "moved": 0.2, "spread": 2.0, "likeness": 0.7}
 
 
 def judged(confidence, frames=1, occluded=False, dt=DT, **changed):
@@ -187,17 +204,34 @@ def test_what_is_occluded_coasts_whatever_it_looks_like():
 @pytest.mark.parametrize(
     ("changed", "follow"),
     [
-        ({"score": 0.4, "moved": 0.2, "spread": 2.0}, True),  # it may only have changed
-        ({"score": 0.4, "moved": 1.6, "spread": 2.0}, False),  # too far from the prediction
-        ({"score": 0.2, "moved": 0.2, "spread": 2.0}, False),  # nothing like it is there
+        ({}, True),  # it may only have changed
+        ({"moved": 1.6}, False),  # too far from the prediction
+        ({"score": 0.2}, False),  # nothing like it is there
+        ({"likeness": 0.5}, False),  # other colours, which stand still in the scene
+        ({"likeness": 0.5, "speed": 1.0}, True),  # what hides it does not walk
     ],
 )
 def test_the_box_stays_on_what_may_be_the_target(changed, follow):
     confidence = settled()
-    decision = judged(confidence, **{**GONE, **changed})
+    decision = judged(confidence, **{**GONE, **MAY_BE, **changed})
     assert (decision.state, decision.follow, decision.weight) == (COASTING, follow, 0.0)
     assert confidence.unseen == (0 if follow else 1)
     assert judged(confidence).returned is not follow
+
+
+@pytest.mark.parametrize("lost_after", [0.5, 2.0])  # hidden, and lost
+def test_who_wears_other_colours_is_not_the_hidden_target(lost_after):
+    confidence = settled(lost_after)
+    hidden = judged(confidence, 8, **GONE)
+    other = judged(confidence, 8, likeness=CONFIG.alike - 0.01)
+    assert (other.follow, other.state) == (lost_after > 1, hidden.state)
+    assert other.score <= CONFIG.unsure
+    decision = judged(confidence, likeness=CONFIG.alike)
+    assert (decision.state, decision.returned) == (TRACKING, True)
+
+
+def test_who_is_in_view_may_change_its_colours():
+    assert judged(settled(), likeness=0.0).state is TRACKING
 
 
 def test_of_two_that_look_alike_neither_is_learnt_nor_sure():
