@@ -83,9 +83,9 @@ class ColourEnsemble:
     def likeness(self, look: Look, box: Box) -> float:
         """How much the colours in ``box``, image px, are those of the target: about 1 for itself.
 
-        The Bhattacharyya coefficient of both histograms over its own average. Unlike
-        :meth:`likelihood` it tells the target from what is in no way like its surroundings
-        either: somebody else.
+        The Bhattacharyya coefficient of both histograms, in which colours count by how much they
+        are the target's alone, over its own average. Unlike :meth:`likelihood` it tells the
+        target from what is in no way like its surroundings either: somebody else.
 
         Raises:
             RuntimeError: nothing was learnt.
@@ -94,7 +94,7 @@ class ColourEnsemble:
             raise RuntimeError(UNTAUGHT)
         x, y = (look.corner_of(np.array(box.centre)) * self._cell).tolist()
         there = self._core(self._bins_of(look.frame.window.pixels), (x, y))
-        return coefficient(there, self._target) / self._usual
+        return self._coefficient(there, self._target) / self._usual
 
     def forget(self) -> None:
         """Nothing of one frame is kept."""
@@ -107,11 +107,7 @@ class ColourEnsemble:
         """
         if self._target is None:
             raise RuntimeError(UNTAUGHT)
-        empty = self._config.empty
-        table = (self._target + empty) / (
-            self._target + self._around + empty / self._config.strange
-        )
-        return np.asarray(table[self._bins_of(pixels)], np.float32)
+        return np.asarray(self._own(self._target)[self._bins_of(pixels)], np.float32)
 
     def learn_pixels(self, pixels: Pixels, corner: Corner, weight: float) -> None:
         """Blend in the colours of a window with the target's corner at ``corner``, window px.
@@ -135,9 +131,19 @@ class ColourEnsemble:
             self._target, self._around = target, around
         else:
             rate = self._rate * weight
-            self._usual += rate * (coefficient(target, self._target) - self._usual)
+            self._usual += rate * (self._coefficient(target, self._target) - self._usual)
             self._target = self._target + rate * (target - self._target)
             self._around = self._around + rate * (around - self._around)
+
+    def _own(self, target: Plane) -> Plane:
+        """Probability of each colour that it is the target's, not that of its surroundings."""
+        empty, strange = self._config.empty, self._config.strange
+        return np.asarray((target + empty) / (target + self._around + empty / strange))
+
+    def _coefficient(self, there: Plane, target: Plane) -> float:
+        """Likeness of two histograms of sum 1: 1 where they are equal."""
+        own = self._own(target)
+        return float((own * np.sqrt(there * target)).sum() / (own * target).sum())
 
     def _core(self, bins: NDArray[np.intp], corner: Corner) -> Plane:
         """The histogram, of sum 1, of a target with its corner there, window px."""
@@ -212,11 +218,6 @@ def _cut(
         last = min(max(round(start + length + more), first + 1), limit)
         ranges.append(slice(first, last))
     return bins[ranges[1], ranges[0]]
-
-
-def coefficient(one: Plane, other: Plane) -> float:
-    """Bhattacharyya coefficient of two histograms of sum 1: 1 where they are equal."""
-    return float(np.sqrt(one * other).sum())
 
 
 def _histogram(bins: NDArray[np.intp]) -> Plane:
