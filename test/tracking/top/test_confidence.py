@@ -223,9 +223,11 @@ def test_the_box_stays_on_what_may_be_the_target(changed, follow):
 def test_who_wears_other_colours_is_not_the_hidden_target(lost_after):
     confidence = settled(lost_after)
     hidden = judged(confidence, 8, **GONE)
-    other = judged(confidence, 8, likeness=CONFIG.alike - 0.01)
+    other = judged(confidence, 8, likeness=CONFIG.stay_alike - 0.01)
     assert (other.follow, other.state) == (False, hidden.state)
     assert other.score <= CONFIG.unsure
+    far = judged(confidence, moved=1.0, likeness=CONFIG.alike - 0.01)
+    assert (far.follow, far.state) == (False, hidden.state)
     decision = judged(confidence, likeness=CONFIG.alike)
     assert (decision.state, decision.returned) == (TRACKING, True)
 
