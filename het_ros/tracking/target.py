@@ -198,7 +198,7 @@ class Target:
             found.distractor,
             float(np.hypot(*away)) / side,
             float(found.weights.std()),
-            found.likeness,
+            found.similarity,
             math.hypot(*self._velocity_in_scene()) / side,
             occluded,
             dt,

@@ -80,7 +80,7 @@ class ColourEnsemble:
             x, y = (look.corner_of(np.array(box.centre)) * self._cell).tolist()
             self.learn_pixels(look.frame.window.pixels, (x, y), weight)
 
-    def likeness(self, look: Look, box: Box) -> float:
+    def similarity(self, look: Look, box: Box) -> float:
         """How much the colours in ``box``, image px, are those of the target: about 1 for itself.
 
         The Bhattacharyya coefficient of both histograms, in which colours count by how much they
@@ -141,7 +141,7 @@ class ColourEnsemble:
         return np.asarray((target + empty) / (target + self._around + empty / strange))
 
     def _coefficient(self, there: Plane, target: Plane) -> float:
-        """Likeness of two histograms of sum 1: 1 where they are equal."""
+        """Similarity of two histograms of sum 1: 1 where they are equal."""
         own = self._own(target)
         return float((own * np.sqrt(there * target)).sum() / (own * target).sum())
 

@@ -64,7 +64,7 @@ class Found:
         box: the target there, image px.
         score: mean score of the sub-patches there; ``distractor`` the highest elsewhere.
         colour: likelihood of the colours there.
-        likeness: of the colours there to the target's, about 1 for itself.
+        similarity: of the colours there to the target's, about 1 for itself.
         weights: (Q,) of the sub-patches there.
         proposal: the network's box there, if it is followed.
         agreement: what the network says of it, if there is one.
@@ -77,7 +77,7 @@ class Found:
     score: float
     distractor: float
     colour: float
-    likeness: float
+    similarity: float
     weights: Floats
     proposal: Proposal | None = None
     agreement: Agreement | None = None
@@ -247,7 +247,7 @@ class Appearance:
             float(votes.template[row, column]),
             distractor(votes.template, peak, look.cells),
             float(votes.colour[row, column]) ** self._colour_power,
-            self.colour.likeness(look, box),
+            self.colour.similarity(look, box),
             self.patches.scores_at(row, column),
         )
 

@@ -88,7 +88,7 @@ class ConfidenceConfig:
             regression is learnt from too few frames to judge).
         stay_within: distance from the prediction up to which the box stays on the best place,
             target sides (chosen: a search window is hardly wider).
-        alike: likeness of the colours from which on a hidden target may be back (honesty: in six
+        alike: similarity of the colours from which on a hidden target may be back (honesty: in six
             rendered loops with people in other clothes, with this and the next two, 6 of 7200
             frames are confident beside the target instead of 618).
         stay_alike: the same, above which the box stays on the best place (honesty: what hides the
@@ -172,7 +172,7 @@ class Confidence:
         distractor: float,
         moved: float,
         spread: float,
-        likeness: float,
+        similarity: float,
         speed: float,
         occluded: bool,
         dt: float,
@@ -186,7 +186,7 @@ class Confidence:
             distractor: highest score elsewhere.
             moved: distance from the prediction, target sides.
             spread: deviation of the sub-patches' scores there.
-            likeness: of the colours there to the target's, about 1 for itself.
+            similarity: of the colours there to the target's, about 1 for itself.
             speed: of the target in the scene, its sides/s.
             occluded: whether the background or another sensor says that something else is there.
             dt: time since the last frame, s.
@@ -217,7 +217,7 @@ class Confidence:
             likely = min(likely, config.unsure)
         least = config.hidden if self._state is State.TRACKING else config.back
         returned = self.unseen > 0
-        alike = not returned or likeness >= config.alike
+        alike = not returned or similarity >= config.alike
         if not occluded and likely >= least and (young or (alike and not nothing)):
             self.unseen, self._unrecognised = 0, 0
             self._hidden_for, self._state = 0.0, State.TRACKING
@@ -230,7 +230,7 @@ class Confidence:
         lost = self._state is State.LOST or self._hidden_for > self._lost_after
         self._state = State.LOST if lost else State.COASTING
         near = moved < config.stay_within and relative > config.stay_above
-        scenery = likeness <= config.stay_alike and speed <= config.moving
+        scenery = similarity <= config.stay_alike and speed <= config.moving
         follow = near and not scenery and not occluded and not lost
         self.unseen = 0 if follow else self.unseen + 1
         published = 0.0 if lost else min(likely, config.unsure)

@@ -166,7 +166,7 @@ def slow_coefficient(there, target, around):
 
 
 @pytest.mark.parametrize("pixels", [FEW, GRAY], ids=["colour", "gray"])
-def test_likeness_is_that_of_the_histograms_over_what_is_usual(pixels):
+def test_similarity_is_that_of_the_histograms_over_what_is_usual(pixels):
     """Learnt at one place and from a second frame; asked for at a third."""
     later = np.roll(pixels, 5, axis=1)[::-1].copy()
     model = ColourEnsemble(SIZE, 1, 0.3)
@@ -180,7 +180,7 @@ def test_likeness_is_that_of_the_histograms_over_what_is_usual(pixels):
     usual = 1 + 0.3 * (slow_coefficient(second, first, around) - 1)
     learnt = blended(first, second, 0.3), blended(around, later_around, 0.3)
     wanted = slow_coefficient(there, *learnt) / usual
-    assert model.likeness(look, Box(20, 12, *SIZE)) == pytest.approx(wanted, abs=1e-5)
+    assert model.similarity(look, Box(20, 12, *SIZE)) == pytest.approx(wanted, abs=1e-5)
 
 
 def test_somebody_in_other_clothes_is_unlike_the_target():
@@ -192,11 +192,11 @@ def test_somebody_in_other_clothes_is_unlike_the_target():
     look = look_at(image, (0.0, 0.0), (80, 60), cells=(10, 30))
     its, others = Box(10, 20, 10, 30), Box(50, 20, 10, 30)
     with pytest.raises(RuntimeError, match="learn"):
-        model.likeness(look, its)
+        model.similarity(look, its)
     model.learn(look, its, 1.0)
-    assert model.likeness(look, its) == pytest.approx(1)
-    assert model.likeness(look, others) == pytest.approx(0.5, abs=0.01)
-    assert model.likeness(look, Box(30, 20, 10, 30)) == 0
+    assert model.similarity(look, its) == pytest.approx(1)
+    assert model.similarity(look, others) == pytest.approx(0.5, abs=0.01)
+    assert model.similarity(look, Box(30, 20, 10, 30)) == 0
 
 
 @pytest.mark.parametrize("corner", [(-500.0, 3.0), (3.0, 500.0), (-500.0, -500.0)])

@@ -21,7 +21,7 @@ SURE = {
     "distractor": 0.2,
     "moved": 0.02,
     "spread": 0.05,
-    "likeness": 1.0,
+    "similarity": 1.0,
     "speed": 0.0,
 }
 GONE = {
@@ -30,10 +30,10 @@ GONE = {
     "distractor": 0.02,
     "moved": 0.9,
     "spread": 0.3,
-    "likeness": 0.2,
+    "similarity": 0.2,
     "speed": 0.0,
 }
-MAY_BE = {"score": 0.4, "moved": 0.2, "spread": 2.0, "likeness": 0.7}
+MAY_BE = {"score": 0.4, "moved": 0.2, "spread": 2.0, "similarity": 0.7}
 
 
 def judged(confidence, frames=1, occluded=False, dt=DT, **changed):
@@ -207,8 +207,8 @@ def test_what_is_occluded_coasts_whatever_it_looks_like():
         ({}, True),  # it may only have changed
         ({"moved": 1.6}, False),  # too far from the prediction
         ({"score": 0.2}, False),  # nothing like it is there
-        ({"likeness": 0.5}, False),  # other colours, which stand still in the scene
-        ({"likeness": 0.5, "speed": 1.0}, True),  # what hides it does not walk
+        ({"similarity": 0.5}, False),  # other colours, which stand still in the scene
+        ({"similarity": 0.5, "speed": 1.0}, True),  # what hides it does not walk
     ],
 )
 def test_the_box_stays_on_what_may_be_the_target(changed, follow):
@@ -223,17 +223,17 @@ def test_the_box_stays_on_what_may_be_the_target(changed, follow):
 def test_who_wears_other_colours_is_not_the_hidden_target(lost_after):
     confidence = settled(lost_after)
     hidden = judged(confidence, 8, **GONE)
-    other = judged(confidence, 8, likeness=CONFIG.stay_alike - 0.01)
+    other = judged(confidence, 8, similarity=CONFIG.stay_alike - 0.01)
     assert (other.follow, other.state) == (False, hidden.state)
     assert other.score <= CONFIG.unsure
-    far = judged(confidence, moved=1.0, likeness=CONFIG.alike - 0.01)
+    far = judged(confidence, moved=1.0, similarity=CONFIG.alike - 0.01)
     assert (far.follow, far.state) == (False, hidden.state)
-    decision = judged(confidence, likeness=CONFIG.alike)
+    decision = judged(confidence, similarity=CONFIG.alike)
     assert (decision.state, decision.returned) == (TRACKING, True)
 
 
 def test_who_is_in_view_may_change_its_colours():
-    assert judged(settled(), likeness=0.0).state is TRACKING
+    assert judged(settled(), similarity=0.0).state is TRACKING
 
 
 def test_of_two_that_look_alike_neither_is_learnt_nor_sure():
