@@ -89,8 +89,8 @@ class ConfidenceConfig:
         stay_within: distance from the prediction up to which the box stays on the best place,
             target sides (chosen: a search window is hardly wider).
         alike: similarity of the colours from which on a hidden target may be back (honesty: in six
-            rendered loops with people in other clothes, with this and the next two, 6 of 7200
-            frames are confident beside the target instead of 618).
+            rendered loops with people in other clothes, with a network and without depth, this
+            and the next two leave 6 of 7200 frames confident beside the target, of 618).
         stay_alike: the same, above which the box stays on the best place (honesty: what hides the
             target takes its place, but seldom its colours) ...
         moving: ... or it has a speed of its own, sides/s (chosen: a slow walk; what hides a
