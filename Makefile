@@ -35,7 +35,7 @@ help: ## What there is to make
 	@echo 'make run [VIDEO=file INIT=x,y,w,h | SEQUENCE=folder] [NETWORK=folder] [OUT=out/run]'
 	@echo 'make operator [VIDEO=file | SEQUENCE=folder] [NETWORK=folder] [OPERATOR="-o host:=0.0.0.0"]; make run WEB=1'
 	@echo 'make evaluate DATA=folder [OUT=out/evaluate] [TRACKERS=het,csrt] [SEEDS=3]'
-	@echo '     [PROTOCOL=ope|tre|sre|passes|realtime|restart] [SEQUENCES=a,b] [SCHEDULER=tcp://host:8786]'
+	@echo '     [PROTOCOL=ope|tre|sre|passes|half_rate|realtime|restart] [SEQUENCES=a,b] [SCHEDULER=tcp://host:8786]'
 	@echo '     [MODELS=folder] [BOXES="NAME=folder ..."]'
 	@echo 'make compare A=folder B=folder[:tracker] [OUT=folder] [DATA=folder]'
 	@echo 'make scenes [OUT=out/scenes] [NETWORK=folder] [SCENES="--seeds 20 --stories lookalike_crosses"]'

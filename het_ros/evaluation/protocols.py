@@ -17,7 +17,7 @@ from het_ros.evaluation.sequences import Frames, Sequence
 from het_ros.evaluation.trackers import Tracker
 from het_ros.tracking.box import Box
 
-PROTOCOLS = ("ope", "tre", "sre", "passes", "realtime", "restart")
+PROTOCOLS = ("ope", "tre", "sre", "passes", "half_rate", "realtime", "restart")
 TRE_STARTS = 20
 RESTART_GAP = 5  # frames from a failure to the new start (VOT)
 BURN_IN = 10  # frames after a start that do not count for accuracy (VOT)
@@ -31,7 +31,7 @@ class Start:
         variant: its name in files, e.g. "tre07".
         first: the frame it starts at, counted from 0.
         box: the box given to the tracker, px.
-        step: from one frame to the next: 1, or 2 for every other one, or -1 for backwards.
+        step: from one frame to the next: 1, or 2 for half the rate, or -1 for backwards.
     """
 
     variant: str
@@ -54,7 +54,7 @@ def starts(protocol: str, sequence: Sequence) -> list[Start]:
     box = true_box(sequence, 0)
     if protocol == "sre":
         return [Start(f"sre{k:02d}", 0, b) for k, b in enumerate(disturbed(box))]
-    return [Start(protocol, 0, box)]
+    return [Start(protocol, 0, box, 2 if protocol == "half_rate" else 1)]
 
 
 def _temporal(sequence: Sequence) -> list[Start]:
@@ -73,7 +73,7 @@ def _passes(sequence: Sequence) -> list[Start]:
         "backwards": slice(count - 1, None, -1),
         "from_a_third": slice(count // 3, None, 1),
         "back_from_two_thirds": slice(2 * count // 3 - 1, None, -1),
-        "every_second": slice(0, None, 2),
+        "half_rate": slice(0, None, 2),
     }
     passes = []
     for name, order in orders.items():

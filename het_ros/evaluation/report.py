@@ -73,7 +73,8 @@ def title(results: Results) -> str:
         "ope": "One-pass evaluation",
         "tre": "Temporal robustness (20 starts)",
         "sre": "Spatial robustness (12 disturbed starts)",
-        "passes": "Five passes (forwards, backwards, in parts, every second frame)",
+        "passes": "Five passes (forwards, backwards, in parts, at half the rate)",
+        "half_rate": "Half the frame rate",
         "realtime": "Real time",
         "restart": "Restart after failure",
     }

@@ -40,8 +40,8 @@ class Frames:
         return np.asarray(image, np.uint8)
 
     def taken(self, rows: slice) -> Frames:
-        """Some of the frames, in the order of ``rows``."""
-        return Frames(self.files[rows], self.rate)
+        """Some of the frames, in the order of ``rows``, of a camera that gives only these."""
+        return Frames(self.files[rows], self.rate / abs(rows.step or 1))
 
     @property
     def dt(self) -> float:

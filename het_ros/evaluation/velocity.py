@@ -117,7 +117,7 @@ def summarise(
     """
     by_sequence: dict[str, list[Figures]] = {}
     for run in runs:
-        dt = 1 / run.camera if run.camera else times[run.sequence]
+        dt = 1 / run.camera if run.camera else times[run.sequence] * abs(run.rows.step or 1)
         figures = judge(run.track, truths[run.sequence][run.rows], dt)
         if figures is not None:
             by_sequence.setdefault(run.sequence, []).append(figures)

@@ -26,7 +26,7 @@ from het_ros.tracking.middle.colour_extent import ColourExtent
 from het_ros.tracking.middle.fusion import Disagreement, FusionConfig, followed_size
 from het_ros.tracking.middle.size import Size
 from het_ros.tracking.top.background import Background
-from het_ros.tracking.top.confidence import Confidence, Decision
+from het_ros.tracking.top.confidence import Confidence, Decision, Observation
 from het_ros.tracking.top.ego_motion import EgoMotion
 from het_ros.tracking.top.kalman import AdaptiveKalman
 from het_ros.tracking.top.redetection import Redetection
@@ -192,18 +192,18 @@ class Target:
             occluded = self._background.shows(image, found.box)
         away = np.array(found.box.centre) - found.look.expected
         side = math.sqrt(found.box.area)
-        return self._confidence.judge(
-            found.score,
-            found.colour,
-            found.distractor,
-            float(np.hypot(*away)) / side,
-            float(found.weights.std()),
-            found.similarity,
-            math.hypot(*self._velocity_in_scene()) / side,
-            occluded,
-            dt,
-            found.agreement,
+        seen = Observation(
+            score=found.score,
+            distractor=found.distractor,
+            colour=found.colour,
+            moved=float(np.hypot(*away)) / side,
+            spread=float(found.weights.std()),
+            similarity=found.similarity,
+            speed=math.hypot(*self._velocity_in_scene()) / side,
+            occluded=occluded,
+            agreement=found.agreement,
         )
+        return self._confidence.judge(seen, dt)
 
     def _coast(self) -> None:
         """The target is not there: go on as predicted."""

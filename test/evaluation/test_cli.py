@@ -103,7 +103,7 @@ def test_the_whole_command(folder, capsys):
 
 @pytest.mark.parametrize(
     ("protocol", "variants"),
-    [("tre", 12), ("sre", 12), ("passes", 5), ("realtime", 3), ("restart", 1)],
+    [("tre", 12), ("sre", 12), ("passes", 5), ("half_rate", 1), ("realtime", 3), ("restart", 1)],
 )
 def test_every_protocol_runs_and_reports(folder, protocol, variants):
     options = ["--protocol", protocol, "--trackers", "identity", "--sequences", "walk"]

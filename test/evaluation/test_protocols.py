@@ -108,7 +108,7 @@ def test_a_restart_gives_the_tracker_images_and_start_boxes_only(moving):
     assert len(seen) == len(moving.frames)
 
 
-@pytest.mark.parametrize("protocol", ["ope", "tre", "sre", "passes", "realtime"])
+@pytest.mark.parametrize("protocol", ["ope", "tre", "sre", "passes", "half_rate", "realtime"])
 def test_jobs_hold_no_truth_but_their_own_start(protocol, moving):
     tracker = spec("identity", Identity)
     for job, rows in Plan([tracker], [moving], protocol).jobs():
@@ -142,6 +142,13 @@ def test_passes_are_the_same_frames_in_five_orders(moving):
         assert start.box == protocols.true_box(moving, taken[0])
         files = [moving.frames.files[i] for i in taken]
         assert list(moving.frames.taken(start.rows).files) == files
+
+
+def test_at_half_the_rate_a_frame_lasts_twice_as_long(moving):
+    (start,) = protocols.starts("half_rate", moving)
+    frames = moving.frames.taken(start.rows)
+    assert frames.files == moving.frames.files[::2]
+    assert frames.dt == 2 * moving.frames.dt
 
 
 def test_passes_start_where_the_target_is_in_sight(tmp_path):

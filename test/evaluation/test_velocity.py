@@ -125,6 +125,15 @@ def test_seeds_are_averaged_and_silent_trackers_left_out():
     assert velocity.summarise([silent], {"s": truth}, times) == {}
 
 
+def test_at_half_the_rate_the_truth_moves_for_twice_the_time():
+    truth = swing()
+    rows = slice(0, None, 2)
+    track = track_of(truth[rows], velocity.derivative_of(truth[rows], 2 * DT))
+    run = Run("x", "s", 0, "half_rate", rows, track)
+    found = velocity.summarise([run], {"s": truth}, {"s": DT})["velocity"]["s"]
+    assert found["published"] == pytest.approx(0, abs=1e-9)
+
+
 def test_sequences_that_move():
     assert set(velocity.moving({"a": {"zero": 0.4}, "b": {"zero": 0.6}})) == {"b"}
 

@@ -77,8 +77,7 @@ class ColourEnsemble:
     def learn(self, look: Look, box: Box, weight: float) -> None:
         """Take in the target in ``box``, image px; see :class:`BaseEnsemble`."""
         if weight > 0:
-            x, y = (look.corner_of(np.array(box.centre)) * self._cell).tolist()
-            self.learn_pixels(look.frame.window.pixels, (x, y), weight)
+            self.learn_pixels(look.frame.window.pixels, self._corner(look, box), weight)
 
     def similarity(self, look: Look, box: Box) -> float:
         """How much the colours in ``box``, image px, are those of the target: about 1 for itself.
@@ -92,8 +91,7 @@ class ColourEnsemble:
         """
         if self._target is None:
             raise RuntimeError(UNTAUGHT)
-        x, y = (look.corner_of(np.array(box.centre)) * self._cell).tolist()
-        there = self._core(self._bins_of(look.frame.window.pixels), (x, y))
+        there = self._core(self._bins_of(look.frame.window.pixels), self._corner(look, box))
         return self._coefficient(there, self._target) / self._usual
 
     def forget(self) -> None:
@@ -134,6 +132,11 @@ class ColourEnsemble:
             self._usual += rate * (self._coefficient(target, self._target) - self._usual)
             self._target = self._target + rate * (target - self._target)
             self._around = self._around + rate * (around - self._around)
+
+    def _corner(self, look: Look, box: Box) -> Corner:
+        """(x, y) of the target in ``box``, window px."""
+        x, y = (look.corner_of(np.array(box.centre)) * self._cell).tolist()
+        return x, y
 
     def _own(self, target: Plane) -> Plane:
         """Probability of each colour that it is the target's, not that of its surroundings."""

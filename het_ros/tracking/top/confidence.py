@@ -117,6 +117,32 @@ class ConfidenceConfig:
 
 
 @dataclass(frozen=True)
+class Observation:
+    """What one frame shows at the place that was found.
+
+    Attributes:
+        score: mean score of the sub-patches there; ``distractor`` the highest elsewhere.
+        colour: likelihood of the colours there, 0..1; 0 without colours.
+        moved: distance from the prediction, target sides.
+        spread: deviation of the sub-patches' scores there.
+        similarity: of the colours there to the target's, about 1 for itself.
+        speed: of the target in the scene, its sides/s.
+        occluded: whether the background or another sensor says that something else is there.
+        agreement: what a network says of the place, where there is one.
+    """
+
+    score: float
+    distractor: float
+    colour: float
+    moved: float
+    spread: float
+    similarity: float
+    speed: float
+    occluded: bool = False
+    agreement: Agreement | None = None
+
+
+@dataclass(frozen=True)
 class Decision:
     """What is done with a frame.
 
@@ -165,76 +191,74 @@ class Confidence:
         """Exponential average of the sub-patches' score, about 1 or less."""
         return max(self._score, 0.05)
 
-    def judge(
-        self,
-        score: float,
-        colour: float,
-        distractor: float,
-        moved: float,
-        spread: float,
-        similarity: float,
-        speed: float,
-        occluded: bool,
-        dt: float,
-        agreement: Agreement | None = None,
-    ) -> Decision:
-        """Judge one frame.
-
-        Args:
-            score: mean score of the sub-patches at the place that was found.
-            colour: likelihood of the colours there, 0..1; 0 without colours.
-            distractor: highest score elsewhere.
-            moved: distance from the prediction, target sides.
-            spread: deviation of the sub-patches' scores there.
-            similarity: of the colours there to the target's, about 1 for itself.
-            speed: of the target in the scene, its sides/s.
-            occluded: whether the background or another sensor says that something else is there.
-            dt: time since the last frame, s.
-            agreement: what a network says of the place, where there is one.
-        """
+    def judge(self, seen: Observation, dt: float) -> Decision:
+        """Judge one frame, ``dt`` s after the last one."""
         config = self._config
         self._frames += 1
-        if not self._colour:
-            self._colour = colour
-        share = colour / self._colour if self._colour else 1.0
-        elsewhere = min(max(distractor, 0.0) / max(score, 1e-6), 10.0)
-        relative = score / self._score
-        found = Features(
-            self._score, relative, share, elsewhere, moved / (1 + self._unrecognised), spread
-        )
-        self.features = found
-        self.agreement = agreement
-        likely = probability(found, agreement, self._calibration)
-        # The regression knows hardly any frame with nothing there: it must not extrapolate.
-        nothing = agreement is None and relative <= config.stay_above
-        if nothing:
-            likely *= max(relative, 0.0) / config.stay_above
-        young = self._frames <= config.new
-        if young:
-            likely = max(likely, config.unsure)
-        ambiguous = elsewhere > config.ambiguous
+        found = self._features_of(seen)
+        self.features, self.agreement = found, seen.agreement
+        likely = self._likely(found, seen.agreement)
+        ambiguous = found.distractor > config.ambiguous
         if ambiguous:
             likely = min(likely, config.unsure)
-        least = config.hidden if self._state is State.TRACKING else config.back
         returned = self.unseen > 0
-        alike = not returned or similarity >= config.alike
-        if not occluded and likely >= least and (young or (alike and not nothing)):
+        if self._recognised(seen, found.relative, likely):
             self.unseen, self._unrecognised = 0, 0
             self._hidden_for, self._state = 0.0, State.TRACKING
             weight = 0.0 if ambiguous else self._weight(likely)
             if weight:
-                self._average(score, colour)
+                self._average(seen.score, seen.colour)
             return Decision(True, returned, weight, likely, self._state)
         self._hidden_for += dt
         self._unrecognised += 1
         lost = self._state is State.LOST or self._hidden_for > self._lost_after
         self._state = State.LOST if lost else State.COASTING
-        near = moved < config.stay_within and relative > config.stay_above
-        scenery = similarity <= config.stay_alike and speed <= config.moving
-        follow = near and not scenery and not occluded and not lost
+        follow = not lost and self._may_be_target(seen, found.relative)
         self.unseen = 0 if follow else self.unseen + 1
         published = 0.0 if lost else min(likely, config.unsure)
         return Decision(follow, returned, 0.0, published, self._state)
+
+    def _features_of(self, seen: Observation) -> Features:
+        if not self._colour:
+            self._colour = seen.colour
+        return Features(
+            self._score,
+            seen.score / self._score,
+            seen.colour / self._colour if self._colour else 1.0,
+            min(max(seen.distractor, 0.0) / max(seen.score, 1e-6), 10.0),
+            seen.moved / (1 + self._unrecognised),
+            seen.spread,
+        )
+
+    @property
+    def _young(self) -> bool:
+        return self._frames <= self._config.new
+
+    def _likely(self, features: Features, agreement: Agreement | None) -> float:
+        """Probability that the box is right, bounded where the regression must not be asked."""
+        config = self._config
+        likely = probability(features, agreement, self._calibration)
+        # The regression knows hardly any frame with nothing there: it must not extrapolate.
+        if agreement is None and features.relative <= config.stay_above:
+            likely *= max(features.relative, 0.0) / config.stay_above
+        return max(likely, config.unsure) if self._young else likely
+
+    def _recognised(self, seen: Observation, relative: float, likely: float) -> bool:
+        """Whether it is the target: one in view may change its colours, a hidden one may not."""
+        config = self._config
+        least = config.hidden if self._state is State.TRACKING else config.back
+        if seen.occluded or likely < least:
+            return False
+        nothing = seen.agreement is None and relative <= config.stay_above
+        alike = self.unseen == 0 or seen.similarity >= config.alike
+        return self._young or (alike and not nothing)
+
+    def _may_be_target(self, seen: Observation, relative: float) -> bool:
+        """Whether what is not recognised is followed all the same: near, and no scenery."""
+        config = self._config
+        near = seen.moved < config.stay_within and relative > config.stay_above
+        scenery = seen.similarity <= config.stay_alike and seen.speed <= config.moving
+        return near and not scenery and not seen.occluded
 
     def _weight(self, likely: float) -> float:
         config = self._config

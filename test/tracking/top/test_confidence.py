@@ -9,7 +9,13 @@ import pytest
 
 from het_ros import State
 from het_ros.tracking.middle.fusion import Agreement
-from het_ros.tracking.top.confidence import Confidence, ConfidenceConfig, Features, probability
+from het_ros.tracking.top.confidence import (
+    Confidence,
+    ConfidenceConfig,
+    Features,
+    Observation,
+    probability,
+)
 
 TRACKING, COASTING, LOST = State.TRACKING, State.COASTING, State.LOST
 CONFIG = ConfidenceConfig()
@@ -39,7 +45,8 @@ MAY_BE = {"score": 0.4, "moved": 0.2, "spread": 2.0, "similarity": 0.7}
 def judged(confidence, frames=1, occluded=False, dt=DT, **changed):
     """The last of some equal frames' decisions."""
     for _ in range(frames):
-        decision = confidence.judge(**{**SURE, **changed}, occluded=occluded, dt=dt)
+        seen = Observation(**{**SURE, **changed}, occluded=occluded)
+        decision = confidence.judge(seen, dt)
     return decision
 
 
