@@ -34,6 +34,8 @@ def strips(
     found = []
     for sequence in sequences:
         runs = _first_runs(scored, sequence.name, ranked)
+        if not runs:  # of a protocol that leaves frames out
+            continue
         spread = disagreement([s.score.overlap for s in runs.values()])
         rows = spaced_peaks(spread, frames)
         found.append((float(np.nanmean(spread)), sequence, runs, rows))
