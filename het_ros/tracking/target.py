@@ -198,10 +198,10 @@ class Target:
             colour=found.colour,
             moved=float(np.hypot(*away)) / side,
             spread=float(found.weights.std()),
-            similarity=found.similarity,
             speed=math.hypot(*self._velocity_in_scene()) / side,
             occluded=occluded,
             agreement=found.agreement,
+            similarity=found.similarity,
         )
         return self._confidence.judge(seen, dt)
 

@@ -64,9 +64,9 @@ class Found:
         box: the target there, image px.
         score: mean score of the sub-patches there; ``distractor`` the highest elsewhere.
         colour: likelihood of the colours there.
-        similarity: of the colours there to the target's, about 1 for itself.
         weights: (Q,) of the sub-patches there.
         proposal: the network's box there, if it is followed.
+        similarity: of the colours there to the target's, about 1 for itself, if there is one.
         agreement: what the network says of it, if there is one.
         disagreement: of network and ensembles; None where their places are one.
     """
@@ -77,9 +77,9 @@ class Found:
     score: float
     distractor: float
     colour: float
-    similarity: float
     weights: Floats
     proposal: Proposal | None = None
+    similarity: float | None = None
     agreement: Agreement | None = None
     disagreement: Disagreement | None = None
 
@@ -184,7 +184,8 @@ class Appearance:
         if proposal.score > self._fusion.sure and not _shows(look, theirs):
             look = self.look(image, theirs, expected)
             votes = self._vote(look)
-        return self._fused(look, self._with_further(look, votes), proposal, expected.usual)
+        found = self._fused(look, self._with_further(look, votes), proposal, expected.usual)
+        return replace(found, similarity=self.colour.similarity(look, found.box))
 
     def learn(self, look: Look, box: Box, weight: float) -> None:
         """The target is in ``box``, image px; see :meth:`BaseEnsemble.learn`."""
@@ -247,7 +248,6 @@ class Appearance:
             float(votes.template[row, column]),
             distractor(votes.template, peak, look.cells),
             float(votes.colour[row, column]) ** self._colour_power,
-            self.colour.similarity(look, box),
             self.patches.scores_at(row, column),
         )
 

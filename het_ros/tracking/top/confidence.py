@@ -7,9 +7,10 @@ comes out, by a logistic regression that ``make fit`` writes. Everything else fo
 three thresholds with hysteresis: what is learnt, when a target counts as hidden, when it is back.
 While the probability is low but nothing else is known to stand there, the box stays on the best
 place near the prediction and nothing is learnt: the target may only have changed. It coasts where
-something speaks for an occluder (background, another sensor, other colours that stand still in
-the scene) or nothing like it is near. A hidden target is back only where its colours are back: a
-search sees many places, and somebody in other clothes has the same shape.
+something speaks for an occluder (background, another sensor) or nothing like it is near.
+
+A network takes anybody for a person it has lost. Where there is one, a hidden target is back only
+where its colours are back, and the box does not stay on other colours that stand still.
 """
 
 from __future__ import annotations
@@ -88,9 +89,9 @@ class ConfidenceConfig:
             regression is learnt from too few frames to judge).
         stay_within: distance from the prediction up to which the box stays on the best place,
             target sides (chosen: a search window is hardly wider).
-        alike: similarity of the colours from which on a hidden target may be back (honesty: in six
-            rendered loops with people in other clothes, with a network and without depth, this
-            and the next two leave 6 of 7200 frames confident beside the target, of 618).
+        alike: with a network, similarity of the colours from which on a hidden target may be back
+            (honesty: in six rendered loops with people in other clothes, without depth, this and
+            the next two leave 6 of 7200 frames confident beside the target, of 618).
         stay_alike: the same, above which the box stays on the best place (honesty: what hides the
             target takes its place, but seldom its colours) ...
         moving: ... or it has a speed of its own, sides/s (chosen: a slow walk; what hides a
@@ -125,10 +126,10 @@ class Observation:
         colour: likelihood of the colours there, 0..1; 0 without colours.
         moved: distance from the prediction, target sides.
         spread: deviation of the sub-patches' scores there.
-        similarity: of the colours there to the target's, about 1 for itself.
         speed: of the target in the scene, its sides/s.
         occluded: whether the background or another sensor says that something else is there.
         agreement: what a network says of the place, where there is one.
+        similarity: of the colours there to the target's, about 1 for itself, where there is one.
     """
 
     score: float
@@ -136,10 +137,10 @@ class Observation:
     colour: float
     moved: float
     spread: float
-    similarity: float
     speed: float
     occluded: bool = False
     agreement: Agreement | None = None
+    similarity: float | None = None
 
 
 @dataclass(frozen=True)
@@ -250,15 +251,16 @@ class Confidence:
         if seen.occluded or likely < least:
             return False
         nothing = seen.agreement is None and relative <= config.stay_above
-        alike = self.unseen == 0 or seen.similarity >= config.alike
-        return self._young or (alike and not nothing)
+        other = seen.similarity is not None and seen.similarity < config.alike
+        return self._young or not (nothing or (other and self.unseen > 0))
 
     def _may_be_target(self, seen: Observation, relative: float) -> bool:
-        """Whether what is not recognised is followed all the same: near, and no scenery."""
+        """Whether what is not recognised is followed all the same: it may only have changed."""
         config = self._config
         near = seen.moved < config.stay_within and relative > config.stay_above
-        scenery = seen.similarity <= config.stay_alike and seen.speed <= config.moving
-        return near and not scenery and not seen.occluded
+        other = seen.similarity is not None and seen.similarity <= config.stay_alike
+        standing = other and seen.speed <= config.moving
+        return near and not standing and not seen.occluded
 
     def _weight(self, likely: float) -> float:
         config = self._config

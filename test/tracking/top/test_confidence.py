@@ -27,7 +27,6 @@ SURE = {
     "distractor": 0.2,
     "moved": 0.02,
     "spread": 0.05,
-    "similarity": 1.0,
     "speed": 0.0,
 }
 GONE = {
@@ -36,10 +35,9 @@ GONE = {
     "distractor": 0.02,
     "moved": 0.9,
     "spread": 0.3,
-    "similarity": 0.2,
     "speed": 0.0,
 }
-MAY_BE = {"score": 0.4, "moved": 0.2, "spread": 2.0, "similarity": 0.7}
+MAY_BE = {"score": 0.4, "moved": 0.2, "spread": 2.0}
 
 
 def judged(confidence, frames=1, occluded=False, dt=DT, **changed):
@@ -224,6 +222,12 @@ def test_the_box_stays_on_what_may_be_the_target(changed, follow):
     assert (decision.state, decision.follow, decision.weight) == (COASTING, follow, 0.0)
     assert confidence.unseen == (0 if follow else 1)
     assert judged(confidence).returned is not follow
+
+
+def test_without_a_network_colours_are_not_asked_for():
+    confidence = settled()
+    judged(confidence, 8, **GONE)
+    assert judged(confidence, similarity=None).state is TRACKING
 
 
 @pytest.mark.parametrize("lost_after", [0.5, 2.0])  # hidden, and lost
