@@ -6,7 +6,8 @@ The box's filter follows fast and its velocity shakes. This one takes the same m
 and knows two velocities that add up: a steady one, which hardly changes, and a brief one (steps,
 turns, a shaking camera), which fades within a tenth of a second. So an even motion is not
 underestimated, and a jerk is not taken for a new course. Process noise and measurement noise
-follow the innovations. A causal filter can be smoother only by lagging.
+follow the innovations, and so does the covariance that is told. A causal filter can be smoother
+only by lagging.
 """
 
 from __future__ import annotations
@@ -34,6 +35,8 @@ class VelocityConfig:
         first_speed: deviation of the steady velocity before anything is known, sides/s.
         rate: weight of a new innovation in their mean (about 20 frames).
         least, most: limits of that mean, of what the filter expects (1 is as expected).
+        scatter: covariance over the filter's own and over that mean: 95 % of the errors are inside
+            its 95 % bound, whether the innovations are small or large.
         coast_time: s, in which a velocity falls to 1/e while it is predicted, hidden or ahead.
         coast_change: white acceleration of a target that is not seen, sides/s^1.5.
     """
@@ -47,6 +50,7 @@ class VelocityConfig:
     rate: float = 0.05
     least: float = 0.1
     most: float = 8.0
+    scatter: float = 1.6
     coast_time: float = 0.5
     coast_change: float = 2.5
 
@@ -78,7 +82,7 @@ class VelocityFilter:
         steady, brief = math.exp(-dt / config.steady_time), math.exp(-dt / config.brief_time)
         ways = way_of(config.steady_time, dt), way_of(config.brief_time, dt)
         move = np.array([[1.0, *ways], [0.0, steady, 0.0], [0.0, 0.0, brief]])
-        unrest = side**2 * min(max(self._strange, config.least), config.most)
+        unrest = side**2 * self._surprise
         slow = unrest * config.steady_change**2
         # A brief velocity keeps its deviation, whatever the step: what fades is renewed.
         renewed = config.brief_time / 2 * (1 - brief**2) / dt
@@ -115,14 +119,19 @@ class VelocityFilter:
         self._state[1] *= math.exp(-self._dt / self._config.coast_time)
 
     @property
+    def _surprise(self) -> float:
+        """Mean square of the innovations over what the filter expects, within its limits."""
+        return min(max(self._strange, self._config.least), self._config.most)
+
+    @property
     def motion(self) -> Motion:
         """What is known now."""
-        config, spread = self._config, self._spread
+        config, spread, dimensions = self._config, self._spread, self._state.shape[1]
         change = config.steady_change + (0.0 if self._seen else config.coast_change)
         return Motion(
             self._state[1].copy(),
             self._state[2].copy(),
-            float(spread[1:, 1:].sum()) * np.eye(self._state.shape[1]),
+            config.scatter * self._surprise * float(spread[1:, 1:].sum()) * np.eye(dimensions),
             config.coast_time,  # what is not measured any more fades as a hidden target's
             config.brief_time,
             self._side * change,

@@ -2,6 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """The filter of the published velocity, on motions with known velocity."""
 
+import itertools
+
 import numpy as np
 import pytest
 
@@ -60,6 +62,15 @@ def test_covariance_holds_on_a_random_walk():
     errors = total(motions) - velocity[50:]
     spread = np.array([motion.covariance[0, 0] for motion in motions])
     assert ((errors**2).sum(axis=1) < 5.99 * spread).mean() > 0.9
+
+
+def test_what_shakes_more_is_known_less():
+    """With the covariance of the filter alone it would be the same for all but the wildest."""
+    spreads = [
+        np.mean([m.covariance[0, 0] for m in followed(even(120, 60.0, noise))[60:]])
+        for noise in (0.01, 0.05, 0.1, 0.2)
+    ]
+    assert all(more > 1.5 * less for less, more in itertools.pairwise(spreads))
 
 
 def test_a_hidden_target_slows_and_is_known_less_and_less():
