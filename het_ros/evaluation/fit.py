@@ -26,7 +26,7 @@ Floats = NDArray[np.float64]
 Image = NDArray[np.uint8]
 # The regressions, by their names in Calibration.
 WITHOUT, WITH, NETWORK = "without_network", "with_network", "network_is_right"
-WIDTHS = {WITHOUT: 6, WITH: 8, NETWORK: 3}
+WIDTHS = {WITHOUT: 6, WITH: 9, NETWORK: 3}
 
 
 @dataclass(frozen=True)

@@ -13,7 +13,7 @@ class Calibration:
 
     Attributes:
         without_network: of "the box is right" on the six ``confidence.Features``, then the bias.
-        with_network: of the same on these and the two of ``fusion.Agreement``, then the bias.
+        with_network: of the same on these and the three of ``fusion.Agreement``, then the bias.
         network_is_right: of "the network's place is the right one of two" on the three of
             ``fusion.Disagreement.evidence``, then the bias.
     """

@@ -27,13 +27,13 @@ from het_ros.tracking.calibration import Calibration
 
 FITTED = Calibration(
     without_network=(3.72, 0.61, 3.46, -3.06, -1.63, -2.67, -4.21),
-    with_network=(2.762, 1.72, 1.538, -1.136, 0.276, 0.818, 2.06, -1.31, -4.963),
+    with_network=(0.21, 0.703, 1.12, -1.214, 0.377, 3.128, 0.296, -0.022, 5.821, -3.904),
     network_is_right=(5.465, 5.116, 1.16, 2.91),
 )
 
 # What the tracker ran with while it was recorded.
 RECORDED_WITH = Calibration(
     without_network=(3.72, 0.61, 3.46, -3.06, -1.63, -2.67, -4.21),
-    with_network=(4.07, 0.7, 1.81, -0.09, 0.1, 0.66, 2.88, -3.21, -5.81),
+    with_network=(4.07, 0.7, 1.81, -0.09, 0.1, 0.66, 2.88, -3.21, 0.0, -5.81),
     network_is_right=(4.28, 2.07, -0.9, 1.03),
 )

@@ -16,6 +16,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from het_ros.tracking.bottom.resemblance import Resemblance
 from het_ros.tracking.bottom.second_thread import SecondThread
 from het_ros.tracking.bottom.siamese import Siamese
 from het_ros.tracking.box import Box
@@ -54,6 +55,7 @@ class Proposal:
         steady: 0..1, near 1 for a box of about the size and aspect of the last.
         scores: (n, n) float32, probabilities of all its places.
         centres: (n, n, 2), image px, of their boxes.
+        resemblance: of the places in its crop to the first box.
     """
 
     box: Box
@@ -61,6 +63,7 @@ class Proposal:
     steady: float
     scores: NDArray[np.float32]
     centres: Floats
+    resemblance: Resemblance
 
     def score_at(self, centre: Floats, within: float) -> float:
         """Highest probability of a box whose centre lies within so many px of a place; or 0."""
@@ -131,7 +134,8 @@ class NetworkEnsemble:
         best = np.unravel_index(int(ranked.argmax()), ranked.shape)
         x, y = centres[best].tolist()
         box = Box.from_centre(x, y, float(w[best]), float(h[best]))
-        return Proposal(box, float(scores[best]), float(steady[best]), scores, centres)
+        score, alike = float(scores[best]), self._network.resemblance()
+        return Proposal(box, score, float(steady[best]), scores, centres, alike)
 
 
 def _context(width: NDArray[np.float64] | float, height: NDArray[np.float64] | float) -> Floats:

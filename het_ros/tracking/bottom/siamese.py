@@ -20,6 +20,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from het_ros.tracking.bottom.resemblance import Resemblance, cosines
 from het_ros.tracking.box import Box
 
 Image = NDArray[np.uint8]
@@ -52,6 +53,7 @@ class Siamese:
         except (cv2.error, StopIteration) as error:
             raise ValueError(f"{backbone} and {head.name} are no NanoTrack network") from error
         self.places = len(score)
+        self._crop = (0.0, 0.0), 1.0
 
     def __getstate__(self) -> dict[str, Any]:
         return {"files": self._files, "template": self._template}
@@ -103,8 +105,14 @@ class Siamese:
             boxes seen from there, (4, n, n) float32, x, y, w, h in px of the image.
         """
         side = crop_side(*size) * SEARCH / TEMPLATE
+        self._crop = centre, side / SEARCH
         score, sides = self._maps(crop(image, centre, side, SEARCH))
         return score, placed(sides, centre, side / SEARCH)
+
+    def resemblance(self) -> Resemblance:
+        """How much the places of the last search crop are like the template."""
+        centre, step = self._crop
+        return Resemblance(cosines(self._template[0], self._seen[0]), centre, STRIDE * step)
 
     def _features(self, pixels: Image) -> Floats:
         self._backbone.setInput(cv2.dnn.blobFromImage(pixels))
@@ -113,7 +121,8 @@ class Siamese:
     def _maps(self, pixels: Image) -> tuple[Floats, Floats]:
         """Probabilities (n, n) and distances (4, n, n), px of the search crop."""
         self._head.setInput(self._template, "input1")
-        self._head.setInput(self._features(pixels), "input2")
+        self._seen = self._features(pixels)
+        self._head.setInput(self._seen, "input2")
         outputs = [np.asarray(out[0]) for out in self._head.forward(self._outputs)]
         classes = next(out for out in outputs if len(out) == 2)
         sides = next(out for out in outputs if len(out) == 4)

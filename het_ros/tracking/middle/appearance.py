@@ -261,7 +261,8 @@ class Appearance:
             centre = fused_place(place, theirs)
             peak = peak_near(votes.template, look.corner_of(centre))
             found = self._at(look, votes, peak, centre)
-            return replace(found, proposal=proposal, agreement=Agreement(proposal.score, apart))
+            agreement = Agreement(proposal.score, apart, proposal.resemblance.at(_point(centre)))
+            return replace(found, proposal=proposal, agreement=agreement)
         here = proposal.score_at(place, config.near * side)
         there = peak_near(votes.response, look.corner_of(theirs))
         gained = float(votes.response[there.row, there.column] - votes.response.max())
@@ -269,9 +270,10 @@ class Appearance:
         differ = Disagreement(proposal.score, here, gained, usual, *places, side)
         if network_is_right(differ, config):
             found = self._at(look, votes, there, theirs)
-            agreement = Agreement(proposal.score, min(apart, 1.0))
+            alike = proposal.resemblance.at(_point(theirs))
+            agreement = Agreement(proposal.score, min(apart, 1.0), alike)
             return replace(found, proposal=proposal, agreement=agreement, disagreement=differ)
-        agreement = Agreement(here, min(apart, 1.0))
+        agreement = Agreement(here, min(apart, 1.0), proposal.resemblance.at(_point(place)))
         return replace(ours, agreement=agreement, disagreement=differ)
 
 

@@ -68,10 +68,12 @@ class Agreement:
     Attributes:
         network_score: the network's probability there, 0..1.
         apart: distance of their two places, target sides, at most 1.
+        resemblance: of the place to the first box, -1..1, by the network's features.
     """
 
     network_score: float
     apart: float
+    resemblance: float
 
 
 @dataclass(frozen=True)

@@ -11,6 +11,7 @@ import pytest
 from het_ros import Box
 from het_ros.tracking.bottom import network
 from het_ros.tracking.bottom.network import NetworkConfig, NetworkEnsemble, Proposal
+from het_ros.tracking.bottom.resemblance import Resemblance
 from het_ros.tracking.bottom.siamese import placed
 
 CONFIG = NetworkConfig()
@@ -35,7 +36,11 @@ class MadeNetwork:
         self.templates.append((image.shape, box))
 
     def look(self, image, centre, size):
+        self.alike = Resemblance(self.scores, centre, 16 * STEP)
         return self.scores, placed(self.sides, centre, STEP)
+
+    def resemblance(self):
+        return self.alike
 
 
 @pytest.fixture
@@ -111,6 +116,7 @@ def test_the_proposal_is_that_of_a_slow_loop(made, seed):
     assert found.score == pytest.approx(given.scores[row, column])
     assert found.steady == pytest.approx(steady, rel=1e-5)
     np.testing.assert_array_equal(found.scores, given.scores)
+    assert found.resemblance is given.alike
     for place, (x, y, *_) in boxes.items():
         np.testing.assert_allclose(found.centres[place], (x, y), rtol=1e-5)
 
@@ -173,7 +179,8 @@ def test_half_of_how_far_the_first_box_lies_beside_is_kept(made):
 def test_the_score_of_a_place_is_the_highest_around_it(place, within, score):
     centres = np.array([[[0.0, 0.0], [4.0, 0.0]], [[0.0, 4.0], [4.0, 4.0]]])
     scores = np.array([[0.2, 0.9], [0.4, 0.1]], np.float32)
-    proposal = Proposal(FIRST, 0.9, 1.0, scores, centres)
+    alike = Resemblance(scores, FIRST.centre, 1.0)
+    proposal = Proposal(FIRST, 0.9, 1.0, scores, centres, alike)
     assert proposal.score_at(np.array(place), within) == pytest.approx(score)
 
 

@@ -79,6 +79,9 @@ def test_it_finds_the_target_that_moved(network, sequences):
     best = np.unravel_index(score.argmax(), score.shape)
     assert score[best] > 0.8
     assert box.iou(Box(*(float(v) for v in boxes[:, best[0], best[1]]))) > 0.5
+    alike = read.resemblance()
+    assert alike.at(box.centre) > 0.7
+    assert all(alike.at(place) < 0.6 for place in ((205, 225), (240, 175), (180, 175)))
 
 
 def test_a_look_does_not_change_what_another_made(network, sequences):

@@ -132,12 +132,13 @@ def test_the_longer_unseen_the_less_a_distance_says():
 
 
 def test_what_a_network_says_counts():
-    """Its score speaks for a place, and its own place far away against it."""
+    """Its score and what is like the first box speak for a place, its own far away against."""
     shown = features(relative=0.5, colour=0.5)
-    sure, unsure = (probability(shown, Agreement(score, 0.1)) for score in (0.95, 0.05))
-    far = probability(shown, Agreement(0.95, 1.0))
-    assert unsure < sure
-    assert far < sure
+    sure, unsure, far, other = (
+        probability(shown, Agreement(*said))
+        for said in ((0.95, 0.1, 0.8), (0.05, 0.1, 0.8), (0.95, 1.0, 0.8), (0.95, 0.1, 0.4))
+    )
+    assert max(unsure, far, other) < sure
 
 
 @pytest.mark.parametrize(
