@@ -19,14 +19,13 @@ from het_ros.evaluation.sequences import Sequence
 from het_ros.tracking.box import Box
 from het_ros.tracking.calibration import Calibration
 from het_ros.tracking.config import TrackerConfig
-from het_ros.tracking.middle.fusion import FusionConfig
 from het_ros.tracking.target import Target
 
 Floats = NDArray[np.float64]
 Image = NDArray[np.uint8]
 # The regressions, by their names in Calibration.
-WITHOUT, WITH, NETWORK = "without_network", "with_network", "network_is_right"
-WIDTHS = {WITHOUT: 6, WITH: 9, NETWORK: 3}
+WITHOUT, WITH = "without_network", "with_network"
+WIDTHS = {WITHOUT: 6, WITH: 9}
 
 
 @dataclass(frozen=True)
@@ -58,9 +57,7 @@ def recorded(
     """Follow a target and record each frame but the first.
 
     A frame is right if the box overlaps the true one by more than half: the box that is
-    published where the place was followed, else the box at the place that was not believed. With
-    a network, a row of ``network_is_right`` is recorded where exactly one of two places lies
-    within ``FusionConfig.agree`` sides of the true centre.
+    published where the place was followed, else the box at the place that was not believed.
 
     Args:
         sequence, group: see :class:`Recorded`.
@@ -85,23 +82,8 @@ def recorded(
         else:
             known = *confidence.features.clipped(), *astuple(confidence.agreement)
             rows[WITH].append((*known, right))
-        rows[NETWORK].extend(_choice(target, truth))
     listed = {n: np.array(r, np.float64).reshape(-1, WIDTHS[n] + 1) for n, r in rows.items()}
     return Recorded(sequence, group, count, listed)
-
-
-def _choice(target: Target, truth: Box | None) -> Iterator[tuple[float, ...]]:
-    """The row of a frame in which exactly one of two places is right, if it is one."""
-    differ, config = target.disagreement, FusionConfig()
-    if differ is None or truth is None:
-        return
-    within = config.agree * np.sqrt(truth.area)
-    theirs, ours = (
-        np.hypot(*np.subtract(place, truth.centre)) < within
-        for place in (differ.theirs, differ.ours)
-    )
-    if theirs != ours:
-        yield *differ.evidence(config.farthest), float(theirs)
 
 
 def given_boxes(box: Box, given: int, off: int, turn: int) -> list[tuple[int, Box]]:

@@ -1,6 +1,6 @@
 # Copyright 2026 het_ros maintainers
 # SPDX-License-Identifier: Apache-2.0
-"""Fit the constants of the score, of re-detection and of the fusion to recorded tracks.
+"""Fit the constants of the score, with a network and without, to recorded tracks.
 
 The tracker follows sequences with ground truth, from their true first boxes and from boxes that
 are off by a tenth, and rendered scenes. Each fit is judged by folds that hold a sequence out, and
@@ -25,6 +25,7 @@ from tqdm import tqdm
 from het_ros.evaluation import fitted_file, logistic, network_peers
 from het_ros.evaluation import sequences as real
 from het_ros.evaluation.fit import (
+    WIDTHS,
     Fit,
     Recorded,
     examples,
@@ -175,6 +176,7 @@ def main(argv: list[str] | None = None) -> int:
     p.add_argument("--seeds", type=int, default=3, help="runs from the true first box (3)")
     p.add_argument("--off", type=int, default=3, help="runs from boxes off by a tenth (3)")
     p.add_argument("--scenes", type=int, default=1, help="rendered scenes of each story (1)")
+    p.add_argument("--only", choices=WIDTHS, help="write only these constants (all)")
     p.add_argument("--again", action="store_true",
                    help="record with the fitted constants: one more round")  # fmt: skip
     p.add_argument("--jobs", type=int, default=joblib.cpu_count(), help="processes")
@@ -188,6 +190,7 @@ def main(argv: list[str] | None = None) -> int:
             raise ValueError("--seeds and --off together must be 1 or more")
         runs = carried_out(planned(options, before), options.jobs)
         fits, missing = fitted(runs)
+        fits = {name: fit for name, fit in fits.items() if options.only in (None, name)}
         if not fits:
             raise ValueError(f"nothing can be fitted: {'; '.join(set(missing.values()))}")
     except (ValueError, OSError) as error:

@@ -9,15 +9,12 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class Calibration:
-    """Weights of three logistic regressions, without units.
+    """Weights of two logistic regressions, without units.
 
     Attributes:
         without_network: of "the box is right" on the six ``confidence.Features``, then the bias.
         with_network: of the same on these and the three of ``fusion.Agreement``, then the bias.
-        network_is_right: of "the network's place is the right one of two" on the three of
-            ``fusion.Disagreement.evidence``, then the bias.
     """
 
     without_network: tuple[float, ...]
     with_network: tuple[float, ...]
-    network_is_right: tuple[float, float, float, float]

@@ -23,7 +23,7 @@ from het_ros.tracking.features.extractor import target_cells
 from het_ros.tracking.fitted import FITTED
 from het_ros.tracking.middle.appearance import Appearance, Expected, Found
 from het_ros.tracking.middle.colour_extent import ColourExtent
-from het_ros.tracking.middle.fusion import Disagreement, FusionConfig, followed_size
+from het_ros.tracking.middle.fusion import followed_size
 from het_ros.tracking.middle.size import Size
 from het_ros.tracking.top.background import Background
 from het_ros.tracking.top.confidence import Confidence, Decision, Observation
@@ -75,8 +75,7 @@ class Target:
         check_cost(config, cells)
         centre, side = np.array(box.centre), math.sqrt(box.area)
         self._config = config
-        fusion = FusionConfig.of(calibration)
-        self._appearance = Appearance(config, image, box, cells, fusion, further)
+        self._appearance = Appearance(config, image, box, cells, further)
         self._extent = None if config.network else ColourExtent()
         self._size = Size(
             np.array([box.w, box.h]),
@@ -104,7 +103,6 @@ class Target:
         self._last_seen = centre
         self._score = 1.0
         self._judged = box
-        self._disagreement: Disagreement | None = None
         self._frames = 0
         self._learn(self._appearance.look(image, centre, self._expected()), box, 1.0, 1.0)
 
@@ -117,11 +115,6 @@ class Target:
     def judged(self) -> Box:
         """The box whose place was judged in the last frame, whether or not it was followed."""
         return self._judged
-
-    @property
-    def disagreement(self) -> Disagreement | None:
-        """Of network and ensembles in the last frame; None where their places are one."""
-        return self._disagreement
 
     def follow(
         self,
@@ -144,7 +137,7 @@ class Target:
         proposed = self._network.begin(image, place, self._size.size) if self._network else None
         self._follow_scene(image, step)
         found = self._appearance.find(image, place, self._expected(), proposed)
-        self._judged, self._disagreement = found.box, found.disagreement
+        self._judged = found.box
         decision = self._judge(found, image, step, witness)
         self._score = decision.score
         if not decision.follow:
@@ -176,8 +169,7 @@ class Target:
         )
 
     def _expected(self) -> Expected:
-        usual = self._confidence.usual
-        return Expected(self._motion.centre, self._size.size, self._score, usual)
+        return Expected(self._motion.centre, self._size.size, self._score)
 
     def _judge(
         self,

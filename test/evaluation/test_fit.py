@@ -50,7 +50,7 @@ def test_starts_are_as_given_and_off_by_a_tenth():
 
 def test_the_order_of_the_runs_makes_no_difference():
     rng = np.random.default_rng(0)
-    runs = [Recorded(name, name, 5, {fit.NETWORK: rng.random((5, 4))}) for name in ("a", "b", "a")]
-    one, other = fit.examples(runs, fit.NETWORK), fit.examples(runs[::-1], fit.NETWORK)
+    runs = [Recorded(name, name, 5, {fit.WITHOUT: rng.random((5, 7))}) for name in ("a", "b", "a")]
+    one, other = fit.examples(runs, fit.WITHOUT), fit.examples(runs[::-1], fit.WITHOUT)
     assert np.array_equal(one.features, other.features)
     assert one.sequences.tolist() == ["a"] * 10 + ["b"] * 5

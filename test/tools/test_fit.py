@@ -8,7 +8,6 @@ from evaluation.doubles import write_sequence
 from het_ros.evaluation import fitted_file
 from het_ros.tools import fit
 from het_ros.tracking import fitted
-from het_ros.tracking.middle.fusion import FusionConfig
 from het_ros.tracking.top.confidence import Features, probability
 
 pytest.importorskip("sklearn")
@@ -46,6 +45,18 @@ def test_two_runs_write_the_same_file(two_sequences, tmp_path, capsys):
     assert "calibration error 0." in described
 
 
+def test_only_what_is_asked_for_is_written(two_sequences, tmp_path, capsys):
+    out = tmp_path / "fitted.py"
+    asked = ["--data", str(two_sequences), "--seeds", "1", "--off", "0", "--scenes", "0"]
+    asked += ["--jobs", "1", "--out", str(out)]
+    assert fit.main([*asked, "--only", "without_network"]) == 0
+    assert runpy.run_path(str(out))["FITTED"] != fitted.FITTED
+    out.unlink()
+    assert fit.main([*asked, "--only", "with_network"]) == 2
+    assert "nothing can be fitted: " in capsys.readouterr().err
+    assert not out.exists()
+
+
 def test_a_new_date_alone_does_not_change_the_file(tmp_path):
     file = tmp_path / "fitted.py"
     one, other = (
@@ -59,9 +70,6 @@ def test_a_new_date_alone_does_not_change_the_file(tmp_path):
 
 
 def test_the_code_uses_the_file():
-    config = FusionConfig()
-    weights = config.by_score, config.by_votes, config.by_distance, config.bias
-    assert weights == fitted.FITTED.network_is_right
     known = Features(0.8, 1.2, 1.0, 0.4, 0.1, 0.2)
     assert probability(known) == probability(known, calibration=fitted.FITTED)
 

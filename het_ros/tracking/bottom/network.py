@@ -53,22 +53,13 @@ class Proposal:
         box: its best box, image px.
         score: that box's own probability, 0..1; it is high on anything like a thing.
         steady: 0..1, near 1 for a box of about the size and aspect of the last.
-        scores: (n, n) float32, probabilities of all its places.
-        centres: (n, n, 2), image px, of their boxes.
         resemblance: of the places in its crop to the first box.
     """
 
     box: Box
     score: float
     steady: float
-    scores: NDArray[np.float32]
-    centres: Floats
     resemblance: Resemblance
-
-    def score_at(self, centre: Floats, within: float) -> float:
-        """Highest probability of a box whose centre lies within so many px of a place; or 0."""
-        near = np.hypot(*np.moveaxis(self.centres - centre, -1, 0)) <= within
-        return float(self.scores[near].max()) if near.any() else 0.0
 
 
 class NetworkEnsemble:
@@ -135,7 +126,7 @@ class NetworkEnsemble:
         x, y = centres[best].tolist()
         box = Box.from_centre(x, y, float(w[best]), float(h[best]))
         score, alike = float(scores[best]), self._network.resemblance()
-        return Proposal(box, score, float(steady[best]), scores, centres, alike)
+        return Proposal(box, score, float(steady[best]), alike)
 
 
 def _context(width: NDArray[np.float64] | float, height: NDArray[np.float64] | float) -> Floats:

@@ -20,13 +20,7 @@ from het_ros.tracking.box import Box
 from het_ros.tracking.config import TrackerConfig
 from het_ros.tracking.estimate import Patch
 from het_ros.tracking.features.extractor import FeatureExtractor
-from het_ros.tracking.middle.fusion import (
-    Agreement,
-    Disagreement,
-    FusionConfig,
-    fused_place,
-    network_is_right,
-)
+from het_ros.tracking.middle.fusion import Agreement, FusionConfig, fused_place
 from het_ros.tracking.middle.voting import Peak, best_place, distractor, peak_near
 
 Floats = NDArray[np.float64]
@@ -45,13 +39,11 @@ class Expected:
         centre: (x, y) by the motion model, image px.
         size: (w, h), image px.
         score: of the last frame, 0..1.
-        usual: the usual score of the sub-patches.
     """
 
     centre: Floats
     size: Floats
     score: float
-    usual: float
 
 
 @dataclass(frozen=True)
@@ -68,7 +60,6 @@ class Found:
         proposal: the network's box there, if it is followed.
         similarity: of the colours there to the target's, about 1 for itself, if there is one.
         agreement: what the network says of it, if there is one.
-        disagreement: of network and ensembles; None where their places are one.
     """
 
     look: Look
@@ -81,7 +72,6 @@ class Found:
     proposal: Proposal | None = None
     similarity: float | None = None
     agreement: Agreement | None = None
-    disagreement: Disagreement | None = None
 
     @property
     def weight(self) -> float:
@@ -112,7 +102,6 @@ class Appearance:
         image: (H, W, 3) or (H, W) uint8.
         box: the target in it.
         cells: (w, h) of the target, as it is looked at.
-        fusion: of the network's box with the ensembles' place.
         further: base ensembles beside those of the configuration; the vote of each multiplies.
 
     Attributes:
@@ -126,7 +115,6 @@ class Appearance:
         image: Image,
         box: Box,
         cells: tuple[int, int],
-        fusion: FusionConfig,
         further: Sequence[EnsembleFactory] = (),
     ) -> None:
         rng = np.random.default_rng(config.seed)
@@ -142,7 +130,7 @@ class Appearance:
         self.flow = FlowEnsemble(cell)
         self._config = config
         self._layout = layout
-        self._fusion = fusion
+        self._fusion = FusionConfig()
         self._colour_power = GRAY_POWER if self.extractor.gray else 1.0
         self._further = tuple(make(image, box) for make in further)
         self._ensembles: tuple[BaseEnsemble, ...] = (
@@ -184,7 +172,7 @@ class Appearance:
         if proposal.score > self._fusion.sure and not _shows(look, theirs):
             look = self.look(image, theirs, expected)
             votes = self._vote(look)
-        found = self._fused(look, self._with_further(look, votes), proposal, expected.usual)
+        found = self._fused(look, self._with_further(look, votes), proposal)
         return replace(found, similarity=self.colour.similarity(look, found.box))
 
     def learn(self, look: Look, box: Box, weight: float) -> None:
@@ -251,30 +239,24 @@ class Appearance:
             self.patches.scores_at(row, column),
         )
 
-    def _fused(self, look: Look, votes: Votes, proposal: Proposal, usual: float) -> Found:
-        """The place that network and ensembles agree on, or the likelier of their two places."""
+    def _fused(self, look: Look, votes: Votes, proposal: Proposal) -> Found:
+        """The place that network and ensembles agree on; else the network's if it is sure."""
         config, side = self._fusion, math.sqrt(float(look.size.prod()))
         ours = self._best_of(look, votes)
         place, theirs = np.array(ours.box.centre), np.array(proposal.box.centre)
         apart = float(np.hypot(*(theirs - place))) / side
+        alike = proposal.resemblance.at
         if apart < config.agree:
             centre = fused_place(place, theirs)
             peak = peak_near(votes.template, look.corner_of(centre))
-            found = self._at(look, votes, peak, centre)
-            agreement = Agreement(proposal.score, apart, proposal.resemblance.at(_point(centre)))
-            return replace(found, proposal=proposal, agreement=agreement)
-        here = proposal.score_at(place, config.near * side)
-        there = peak_near(votes.response, look.corner_of(theirs))
-        gained = float(votes.response[there.row, there.column] - votes.response.max())
-        places = _point(theirs), _point(place), _point(look.expected)
-        differ = Disagreement(proposal.score, here, gained, usual, *places, side)
-        if network_is_right(differ, config):
-            found = self._at(look, votes, there, theirs)
-            alike = proposal.resemblance.at(_point(theirs))
-            agreement = Agreement(proposal.score, min(apart, 1.0), alike)
-            return replace(found, proposal=proposal, agreement=agreement, disagreement=differ)
-        agreement = Agreement(here, min(apart, 1.0), proposal.resemblance.at(_point(place)))
-        return replace(ours, agreement=agreement, disagreement=differ)
+        elif proposal.score > config.sure:
+            centre = theirs
+            peak = peak_near(votes.response, look.corner_of(centre))
+        else:
+            agreement = Agreement(proposal.score, min(apart, 1.0), alike(_point(place)))
+            return replace(ours, agreement=agreement)
+        agreement = Agreement(proposal.score, min(apart, 1.0), alike(_point(centre)))
+        return replace(self._at(look, votes, peak, centre), proposal=proposal, agreement=agreement)
 
 
 def _shows(look: Look, centre: Floats) -> bool:

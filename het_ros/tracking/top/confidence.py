@@ -187,11 +187,6 @@ class Confidence:
         self.agreement: Agreement | None = None
         self.unseen = 0
 
-    @property
-    def usual(self) -> float:
-        """Exponential average of the sub-patches' score, about 1 or less."""
-        return max(self._score, 0.05)
-
     def judge(self, seen: Observation, dt: float) -> Decision:
         """Judge one frame, ``dt`` s after the last one."""
         config = self._config

@@ -10,7 +10,7 @@ import pytest
 
 from het_ros import Box
 from het_ros.tracking.bottom import network
-from het_ros.tracking.bottom.network import NetworkConfig, NetworkEnsemble, Proposal
+from het_ros.tracking.bottom.network import NetworkConfig, NetworkEnsemble
 from het_ros.tracking.bottom.resemblance import Resemblance
 from het_ros.tracking.bottom.siamese import placed
 
@@ -115,10 +115,7 @@ def test_the_proposal_is_that_of_a_slow_loop(made, seed):
     np.testing.assert_allclose((*found.box.centre, found.box.w, found.box.h), (x, y, w, h), 1e-5)
     assert found.score == pytest.approx(given.scores[row, column])
     assert found.steady == pytest.approx(steady, rel=1e-5)
-    np.testing.assert_array_equal(found.scores, given.scores)
     assert found.resemblance is given.alike
-    for place, (x, y, *_) in boxes.items():
-        np.testing.assert_allclose(found.centres[place], (x, y), rtol=1e-5)
 
 
 @pytest.mark.parametrize(
@@ -172,18 +169,6 @@ def test_half_of_how_far_the_first_box_lies_beside_is_kept(made):
     np.testing.assert_allclose(np.subtract(centre, FIRST.centre), (-1, 0), atol=1e-4)
 
 
-@pytest.mark.parametrize(
-    ("place", "within", "score"),
-    [((0, 0), 1.0, 0.2), ((0, 0), 4.5, 0.9), ((4, 0), 1.0, 0.9), ((9, 9), 3.0, 0.0)],
-)
-def test_the_score_of_a_place_is_the_highest_around_it(place, within, score):
-    centres = np.array([[[0.0, 0.0], [4.0, 0.0]], [[0.0, 4.0], [4.0, 4.0]]])
-    scores = np.array([[0.2, 0.9], [0.4, 0.1]], np.float32)
-    alike = Resemblance(scores, FIRST.centre, 1.0)
-    proposal = Proposal(FIRST, 0.9, 1.0, scores, centres, alike)
-    assert proposal.score_at(np.array(place), within) == pytest.approx(score)
-
-
 def test_a_folder_without_a_network_is_refused(tmp_path):
     with pytest.raises(ValueError, match="one NanoTrack network"):
         NetworkEnsemble(tmp_path)
@@ -196,7 +181,7 @@ def real(models):
 
 @pytest.mark.parametrize("name", ["Crossing", "David", "Car1"])
 def test_on_real_frames_the_proposal_is_the_target(real, sequence, name):
-    """Looked for at the place of three frames ago; a place without it is less likely."""
+    """Looked for at the place of three frames ago; a place without it is less like it."""
     frames = sequence(name)
     real.start(frames.image(0), frames.boxes[0])
     for index in (3, 6):
@@ -205,6 +190,5 @@ def test_on_real_frames_the_proposal_is_the_target(real, sequence, name):
         found = real.propose(frames.image(index), np.array(before.centre), size)
         assert found.box.iou(truth) > 0.5
         assert found.score > 0.5
-        side = math.sqrt(truth.area)
-        beside = np.add(truth.centre, (0.0, 1.5 * side))
-        assert found.score_at(beside, 0.3 * side) < found.score
+        below = truth.centre[0], truth.centre[1] + 1.5 * math.sqrt(truth.area)
+        assert found.resemblance.at(below) < found.resemblance.at(truth.centre)

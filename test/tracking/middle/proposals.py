@@ -9,10 +9,9 @@ from het_ros.tracking.bottom.network import Proposal
 from het_ros.tracking.bottom.resemblance import Resemblance
 
 SIZE = np.array([20.0, 30.0])
-SCORE = np.zeros((1, 1), np.float32)
 
 
 def proposal(size, score=1.0, steady=1.0, centre=(100.0, 50.0)):
     box = Box.from_centre(*centre, *size)
-    scores, alike = np.full_like(SCORE, score), Resemblance(np.full_like(SCORE, 0.8), centre, 8.0)
-    return Proposal(box, score, steady, scores, np.array([[centre]]), alike)
+    alike = Resemblance(np.full((1, 1), 0.8, np.float32), centre, 8.0)
+    return Proposal(box, score, steady, alike)
