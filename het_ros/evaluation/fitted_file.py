@@ -57,7 +57,11 @@ def text(
         date: of today.
     """
     filled = textwrap.fill(data, 97, break_long_words=False, break_on_hyphens=False)
-    figures = "\n".join(f"    {name}: {figures_of(fit)}" for name, fit in fits.items())
+    figures = "\n".join(
+        f"    {field.name}: "
+        + (figures_of(fits[field.name]) if field.name in fits else "as before, not of this run")
+        for field in fields(calibration)
+    )
     return _FILE.format(
         date=date,
         data=filled,

@@ -58,8 +58,8 @@ class Found:
         colour: likelihood of the colours there.
         weights: (Q,) of the sub-patches there.
         proposal: the network's box there, if it is followed.
-        similarity: of the colours there to the target's, about 1 for itself, if there is one.
-        agreement: what the network says of it, if there is one.
+        agreement: what a network says of the place, where there is one.
+        similarity: with a network, of the colours there to the target's, about 1 for itself.
     """
 
     look: Look
@@ -70,8 +70,8 @@ class Found:
     colour: float
     weights: Floats
     proposal: Proposal | None = None
-    similarity: float | None = None
     agreement: Agreement | None = None
+    similarity: float | None = None
 
     @property
     def weight(self) -> float:

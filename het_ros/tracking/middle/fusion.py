@@ -47,7 +47,7 @@ class Agreement:
     """What network and ensembles say of the chosen place together.
 
     Attributes:
-        network_score: the network's probability there, 0..1.
+        network_score: the network's probability of its own place, 0..1.
         apart: distance of their two places, target sides, at most 1.
         resemblance: of the place to the first box, -1..1, by the network's features.
     """

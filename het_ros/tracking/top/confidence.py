@@ -129,7 +129,7 @@ class Observation:
         speed: of the target in the scene, its sides/s.
         occluded: whether the background or another sensor says that something else is there.
         agreement: what a network says of the place, where there is one.
-        similarity: of the colours there to the target's, about 1 for itself, where there is one.
+        similarity: with a network, of the colours there to the target's, about 1 for itself.
     """
 
     score: float
