@@ -102,8 +102,8 @@ def _tracker(
     if plan.protocol == "restart":
         figures |= restarts.summarise(runs, truths)
     else:
-        times = {sequence.name: sequence.frames.dt for sequence in sequences.values()}
-        figures |= velocity.summarise(runs, truths, times)
+        frames = {sequence.name: sequence.frames for sequence in sequences.values()}
+        figures |= velocity.summarise(runs, truths, frames)
     return figures
 
 

@@ -16,6 +16,7 @@ from het_ros.evaluation.velocity_metrics import Flags, Floats
 
 if TYPE_CHECKING:
     from het_ros.evaluation.runs import Run  # which needs what runs trackers: scenes do not
+    from het_ros.evaluation.sequences import Frames
 
 LEAST_FRAMES = 20  # on the target, of a run that is judged
 MOVING = 0.5  # sides/s: true speed, root mean square, of a target that moves
@@ -106,18 +107,18 @@ def _ahead(
 
 
 def summarise(
-    runs: Iterable[Run], truths: Mapping[str, Floats], times: Mapping[str, float]
+    runs: Iterable[Run], truths: Mapping[str, Floats], frames: Mapping[str, Frames]
 ) -> dict[str, Any]:
     """``velocity`` by sequence, each figure a mean over its runs; empty without velocities.
 
     Args:
         runs: of one tracker.
         truths: (n, 4) px by sequence.
-        times: between two frames, s, by sequence.
+        frames: of the whole sequences, by sequence.
     """
     by_sequence: dict[str, list[Figures]] = {}
     for run in runs:
-        dt = 1 / run.camera if run.camera else times[run.sequence] * abs(run.rows.step or 1)
+        dt = 1 / run.camera if run.camera else frames[run.sequence].taken(run.rows).dt
         figures = judge(run.track, truths[run.sequence][run.rows], dt)
         if figures is not None:
             by_sequence.setdefault(run.sequence, []).append(figures)

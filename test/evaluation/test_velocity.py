@@ -7,9 +7,11 @@ from het_ros import Box, Estimate, State
 from het_ros.evaluation import velocity
 from het_ros.evaluation.answers import HORIZONS, Answer, Track
 from het_ros.evaluation.runs import Run
+from het_ros.evaluation.sequences import Frames
 from het_ros.evaluation.trackers import predicted
 
 DT, N = 0.1, 80
+FRAMES = {"s": Frames(("",) * N, 1 / DT)}
 
 
 def swing(late=0.0):
@@ -117,12 +119,11 @@ def test_seeds_are_averaged_and_silent_trackers_left_out():
         Run("x", "s", seed, "ope", slice(0, None), track_of(truth, of))
         for seed, of in enumerate((quick, still))
     ]
-    times = {"s": DT}
-    found = velocity.summarise(runs, {"s": truth}, times)["velocity"]["s"]
+    found = velocity.summarise(runs, {"s": truth}, FRAMES)["velocity"]["s"]
     assert found["published"] == pytest.approx(found["zero"] / 2)
     assert found["lag"] == pytest.approx(0, abs=0.05), "the one that is known"
     silent = Run("x", "s", 0, "ope", slice(0, None), track_of(truth, np.full((N, 2), np.nan)))
-    assert velocity.summarise([silent], {"s": truth}, times) == {}
+    assert velocity.summarise([silent], {"s": truth}, FRAMES) == {}
 
 
 def test_at_half_the_rate_the_truth_moves_for_twice_the_time():
@@ -130,7 +131,7 @@ def test_at_half_the_rate_the_truth_moves_for_twice_the_time():
     rows = slice(0, None, 2)
     track = track_of(truth[rows], velocity.derivative_of(truth[rows], 2 * DT))
     run = Run("x", "s", 0, "half_rate", rows, track)
-    found = velocity.summarise([run], {"s": truth}, {"s": DT})["velocity"]["s"]
+    found = velocity.summarise([run], {"s": truth}, FRAMES)["velocity"]["s"]
     assert found["published"] == pytest.approx(0, abs=1e-9)
 
 
