@@ -124,5 +124,6 @@ def test_a_copy_has_the_same_network_and_its_own_thread(made_network, two, place
     where = np.array(box.centre), np.array([box.w, box.h])
     mine, its = (one.begin(after, *where)() for one in (network, copied(network)))
     assert mine.box == its.box
-    np.testing.assert_array_equal(mine.resemblance.cosines, its.resemblance.cosines)
+    np.testing.assert_array_equal(mine.resemblance.search, its.resemblance.search)
+    np.testing.assert_array_equal(mine.resemblance.target, its.resemblance.target)
     assert len({*places, threading.get_ident()}) == 3

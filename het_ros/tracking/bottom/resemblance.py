@@ -22,44 +22,35 @@ class Resemblance:
     """Of the places in a search crop to the first box.
 
     Attributes:
-        cosines: (n, n) float32, -1..1, rows first.
-        centre: (x, y), px of the image: the middle place.
+        target: (C, k, k) float32 features of the first box; see :func:`middle_of`.
+        search: (C, s, s) float32 features of the search crop, s at least k.
+        centre: (x, y), px of the image: the crop's middle.
         step: px of the image between two places.
     """
 
-    cosines: Floats
+    target: Floats
+    search: Floats
     centre: tuple[float, float]
     step: float
 
     def at(self, place: tuple[float, float]) -> float:
-        """That of the nearest place to (x, y), px of the image."""
-        last = len(self.cosines) - 1
+        """The cosine, -1..1, of the target with the nearest place to (x, y), px of the image."""
+        side = self.target.shape[1]
+        last = self.search.shape[1] - side
         column, row = (
             min(max(round((to - middle) / self.step + last / 2), 0), last)
             for to, middle in zip(place, self.centre, strict=True)
         )
-        return float(self.cosines[row, column])
+        there = self.search[:, row : row + side, column : column + side]
+        lengths = np.linalg.norm(self.target) * np.linalg.norm(there)
+        return float((self.target * there).sum() / max(lengths, 1e-9))
 
 
-def cosines(template: Floats, search: Floats) -> Floats:
-    """Cosine of the middle of a template with each place of a search crop.
+def middle_of(template: Floats) -> Floats:
+    """(C, t / 2, t / 2): the target in the features (C, t, t) of its crop.
 
-    The middle is half of the template's side: its crop has the target with as much around it.
-
-    Args:
-        template: (C, t, t) features of the target's crop.
-        search: (C, s, s) features of the search crop, s over t / 2.
-
-    Returns:
-        (n, n), n = s - t / 2 + 1; the middle place is that of the crop's middle.
+    It is half of the crop's side: the crop has as much around the target.
     """
     side = template.shape[1] // 2
     first = (template.shape[1] - side) // 2
-    middle = template[:, first : first + side, first : first + side]
-    places = np.lib.stride_tricks.sliding_window_view(search, (side, side), axis=(1, 2))
-    products = np.tensordot(middle, places, axes=((0, 1, 2), (0, 3, 4)))
-    squares = np.lib.stride_tricks.sliding_window_view(
-        np.square(search).sum(axis=0), (side, side)
-    ).sum(axis=(2, 3))
-    lengths = np.sqrt(squares * np.square(middle).sum())
-    return np.asarray(products / np.maximum(lengths, 1e-9), np.float32)
+    return template[:, first : first + side, first : first + side]

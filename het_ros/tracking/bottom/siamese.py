@@ -20,7 +20,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from het_ros.tracking.bottom.resemblance import Resemblance, cosines
+from het_ros.tracking.bottom.resemblance import Resemblance, middle_of
 from het_ros.tracking.box import Box
 
 Image = NDArray[np.uint8]
@@ -112,7 +112,7 @@ class Siamese:
     def resemblance(self) -> Resemblance:
         """How much the places of the last search crop are like the template."""
         centre, step = self._crop
-        return Resemblance(cosines(self._template[0], self._seen[0]), centre, STRIDE * step)
+        return Resemblance(middle_of(self._template[0]), self._seen[0], centre, STRIDE * step)
 
     def _features(self, pixels: Image) -> Floats:
         self._backbone.setInput(cv2.dnn.blobFromImage(pixels))

@@ -172,8 +172,7 @@ class Appearance:
         if proposal.score > self._fusion.sure and not _shows(look, theirs):
             look = self.look(image, theirs, expected)
             votes = self._vote(look)
-        found = self._fused(look, self._with_further(look, votes), proposal)
-        return replace(found, similarity=self.colour.similarity(look, found.box))
+        return self._fused(look, self._with_further(look, votes), proposal)
 
     def learn(self, look: Look, box: Box, weight: float) -> None:
         """The target is in ``box``, image px; see :meth:`BaseEnsemble.learn`."""
@@ -242,29 +241,23 @@ class Appearance:
     def _fused(self, look: Look, votes: Votes, proposal: Proposal) -> Found:
         """The place that network and ensembles agree on; else the network's if it is sure."""
         config, side = self._fusion, math.sqrt(float(look.size.prod()))
-        ours = self._best_of(look, votes)
-        place, theirs = np.array(ours.box.centre), np.array(proposal.box.centre)
+        found = self._best_of(look, votes)
+        place, theirs = np.array(found.box.centre), np.array(proposal.box.centre)
         apart = float(np.hypot(*(theirs - place))) / side
-        alike = proposal.resemblance.at
-        if apart < config.agree:
-            centre = fused_place(place, theirs)
-            peak = peak_near(votes.template, look.corner_of(centre))
-        elif proposal.score > config.sure:
-            centre = theirs
-            peak = peak_near(votes.response, look.corner_of(centre))
-        else:
-            agreement = Agreement(proposal.score, min(apart, 1.0), alike(_point(place)))
-            return replace(ours, agreement=agreement)
-        agreement = Agreement(proposal.score, min(apart, 1.0), alike(_point(centre)))
-        return replace(self._at(look, votes, peak, centre), proposal=proposal, agreement=agreement)
+        agree = apart < config.agree
+        if agree or proposal.score > config.sure:
+            centre = fused_place(place, theirs) if agree else theirs
+            peak = peak_near(votes.template if agree else votes.response, look.corner_of(centre))
+            found = replace(self._at(look, votes, peak, centre), proposal=proposal)
+        alike = proposal.resemblance.at(found.box.centre)
+        return replace(
+            found,
+            agreement=Agreement(proposal.score, min(apart, 1.0), alike),
+            similarity=self.colour.similarity(look, found.box),
+        )
 
 
 def _shows(look: Look, centre: Floats) -> bool:
     """Whether a target with its ``centre`` there is voted for in this look."""
     column, row = look.corner_of(centre).tolist()
     return bool(0 <= row <= look.places[0] - 1 and 0 <= column <= look.places[1] - 1)
-
-
-def _point(place: Floats) -> tuple[float, float]:
-    x, y = place.tolist()
-    return x, y

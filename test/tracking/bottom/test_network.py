@@ -36,7 +36,7 @@ class MadeNetwork:
         self.templates.append((image.shape, box))
 
     def look(self, image, centre, size):
-        self.alike = Resemblance(self.scores, centre, 16 * STEP)
+        self.alike = Resemblance(self.scores[None, :1, :1], self.scores[None], centre, 16 * STEP)
         return self.scores, placed(self.sides, centre, STEP)
 
     def resemblance(self):

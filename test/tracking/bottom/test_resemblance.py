@@ -5,7 +5,15 @@
 import numpy as np
 import pytest
 
-from het_ros.tracking.bottom.resemblance import Resemblance, cosines
+from het_ros.tracking.bottom.resemblance import Resemblance, middle_of
+
+
+def cosines(template, search):
+    """Those of all places, one pixel of the image apart: (n, n)."""
+    alike = Resemblance(middle_of(template), search, (0.0, 0.0), 1.0)
+    places = np.arange(search.shape[1] - template.shape[1] // 2 + 1)
+    places = places - places[-1] / 2
+    return np.array([[alike.at((x, y)) for x in places] for y in places])
 
 
 @pytest.mark.parametrize(("template", "search"), [(8, 16), (4, 9), (2, 5)])
@@ -45,5 +53,8 @@ def test_it_is_one_where_the_template_is_and_finite_where_nothing_is():
     ],
 )
 def test_a_place_has_the_nearest_one(place, row, column):
-    values = np.arange(169, dtype=np.float32).reshape(13, 13)
-    assert Resemblance(values, (100, 50), 2.0).at(place) == values[row, column]
+    values = np.arange(169, dtype=np.float32).reshape(13, 13) / 169
+    search = np.stack([values, np.sqrt(1 - values**2)])
+    target = np.array([1, 0], np.float32)[:, None, None]
+    found = Resemblance(target, search, (100, 50), 2.0).at(place)
+    assert found == pytest.approx(values[row, column], abs=1e-6)

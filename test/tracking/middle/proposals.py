@@ -13,5 +13,6 @@ SIZE = np.array([20.0, 30.0])
 
 def proposal(size, score=1.0, steady=1.0, centre=(100.0, 50.0)):
     box = Box.from_centre(*centre, *size)
-    alike = Resemblance(np.full((1, 1), 0.8, np.float32), centre, 8.0)
+    there = np.array([0.8, 0.6], np.float32)[:, None, None]
+    alike = Resemblance(np.array([1, 0], np.float32)[:, None, None], there, centre, 8.0)
     return Proposal(box, score, steady, alike)
